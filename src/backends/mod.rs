@@ -1,0 +1,85 @@
+//! Printers: from a verified program to bytes. A backend is one file and one line of [`TARGETS`].
+
+use crate::diag::Sink;
+use crate::ir::verify::Verified;
+use serde::de::DeserializeOwned;
+use std::io;
+
+/// A configured backend. The value of a backend is its options.
+pub trait Backend {
+    /// Writes the program. Remarks (an approximation, an estimate) go to the sink.
+    fn emit(&self, program: &Verified<'_>, out: &mut dyn io::Write, sink: &mut Sink<'_>)
+    -> Result<(), Error>;
+}
+
+/// A kind of output: its facts, and options that come from `--set KEY=VALUE` through serde.
+pub trait Format: Backend + DeserializeOwned + 'static {
+    /// Name, as in `--to NAME`.
+    const NAME: &'static str;
+    /// File extension without the dot.
+    const EXTENSION: &'static str;
+    /// One line about it.
+    const ABOUT: &'static str;
+    /// True when the output is no text and must not go to a terminal.
+    const BINARY: bool = false;
+}
+
+/// What a backend can fail with that is not the user's input.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The output could not be written.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// The program lacks what this backend needs.
+    #[error("{backend} cannot write this: {what}")]
+    Unsupported {
+        /// Name of the backend.
+        backend: &'static str,
+        /// What is missing.
+        what: String,
+    },
+}
+
+/// One row of the list of targets.
+pub struct Target {
+    /// Name, as in `--to NAME`.
+    pub name: &'static str,
+    /// File extension without the dot.
+    pub extension: &'static str,
+    /// One line about it.
+    pub about: &'static str,
+    /// True when the output is no text.
+    pub binary: bool,
+    configure: fn(toml::Table) -> Result<Box<dyn Backend>, toml::de::Error>,
+}
+
+impl std::fmt::Debug for Target {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+impl Target {
+    /// The row of a format.
+    pub const fn of<F: Format>() -> Self {
+        Self {
+            name: F::NAME,
+            extension: F::EXTENSION,
+            about: F::ABOUT,
+            binary: F::BINARY,
+            configure: |table| Ok(Box::new(F::deserialize(table)?)),
+        }
+    }
+    /// The backend with the options of a table; unknown keys and wrong types are errors.
+    pub fn configure(&self, options: toml::Table) -> Result<Box<dyn Backend>, toml::de::Error> {
+        (self.configure)(options)
+    }
+}
+
+/// Every target.
+pub static TARGETS: &[Target] = &[];
+
+/// The target with this name.
+pub fn target(name: &str) -> Option<&'static Target> {
+    TARGETS.iter().find(|target| target.name == name)
+}

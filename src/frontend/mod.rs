@@ -1,0 +1,30 @@
+//! Readers: from bytes to a value, with spans and diagnostics. A reader is one file and one line of [`READERS`].
+
+use crate::diag::{Sink, Source, Sources};
+use crate::ir::Program;
+use crate::shape::Shape;
+
+/// What a file turned out to be.
+#[derive(Debug)]
+pub enum Input {
+    /// Something to compile.
+    Shape(Box<Shape>),
+    /// A pattern that is already one.
+    Program(Box<Program>),
+}
+
+/// One readable format.
+#[derive(Debug)]
+pub struct Reader {
+    /// Name, as in `picot list readers`.
+    pub name: &'static str,
+    /// File extensions without the dot.
+    pub extensions: &'static [&'static str],
+    /// One line about it.
+    pub about: &'static str,
+    /// Reads one opened file. It returns what it could read; faults go to the sink.
+    pub read: fn(&Source, &mut Sources<'_>, &mut Sink<'_>) -> Option<Input>,
+}
+
+/// Every reader.
+pub static READERS: &[Reader] = &[];
