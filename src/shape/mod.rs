@@ -15,9 +15,13 @@ pub struct Jet {
     pub dv: DVec3,
 }
 
-/// A tube S(u, v): u in [0, 1] runs along it, v in turns runs around it and has period 1. The cross product of
-/// the derivatives by v and by u points outward, so v runs counterclockwise for an eye that looks along falling u. (Paper, section 3.1: the target
-/// shape may be given in Rust; this trait is that way.)
+/// A tube S(u, v): u in [0, 1] runs along it, v in turns runs around it and has period 1.
+///
+/// Orientation: du x dv points OUTWARD. A right-handed maker, right side out, finds the next stitch to the left when u
+/// points up; so v runs to the left seen from outside, which is clockwise for an eye that looks back from the end of the
+/// tube to its start. A surface the other way round comes out mirrored.
+///
+/// (Paper, section 3.1: the target shape may be given in Rust; this trait is that way.)
 pub trait ParametricSurface: fmt::Debug + Send + Sync {
     /// Position in mm. Defined a little beyond [0, 1] in u too, for the relaxation looks over the edge.
     fn point(&self, u: f64, v: f64) -> DVec3;
