@@ -27,6 +27,8 @@ pub struct Graph {
 pub struct Node {
     /// Position in mm.
     pub position: DVec3,
+    /// Surface parameter along the tube, in [0, 1].
+    pub u: f64,
     /// Row coordinate: rows from the start of the surface, fractional (the paper's tau).
     pub tau: f64,
     /// Position around the tube in [0, 1).
