@@ -35,8 +35,8 @@ impl Part {
     /// Number of the first row in [`Part::rows`]: the stitches of a magic ring are round 1, so its rows begin with 2.
     pub fn first_number(&self) -> u32 {
         match self.start {
-            Start::Ring { .. } => 2,
-            Start::Chain { .. } | Start::Join { .. } => 1,
+            Start::Ring { loops: 1.. } => 2,
+            Start::Ring { loops: 0 } | Start::Chain { .. } | Start::Join { .. } => 1,
         }
     }
     /// Each row with the number of its first round; a folded row counts `times`.
@@ -54,12 +54,13 @@ impl Part {
 pub enum Start {
     /// A magic ring with single crochets in it.
     Ring {
-        /// Stitches worked into the ring, which is round 1.
+        /// Stitches worked into the ring, which is round 1. 0 for a ring that other stitches than plain single
+        /// crochets go into: row 1 then lists them, each working no loop.
         loops: u32,
     },
     /// A chain.
     Chain {
-        /// Chains that are worked into.
+        /// Chains that are worked into; 0 where the stitches of row 1 bring their own chain.
         loops: u32,
         /// Joined to a ring, for work in the round.
         joined: bool,

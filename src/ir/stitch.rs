@@ -1,6 +1,6 @@
 //! The one table of stitch kinds, and what a stitch does to the loops.
 
-/// Declares the stitch kinds. A kind is added here and nowhere else.
+/// Declares the stitch kinds. A kind is added here and nowhere else: readers and writers take its abbreviations from this row.
 macro_rules! stitches {
     ($($(#[doc = $doc:literal])+ $kind:ident { us: $us:literal, uk: $uk:literal, us_name: $us_name:literal,
         uk_name: $uk_name:literal, works: $works:literal, makes: $makes:literal, height: $height:literal })+) => {
@@ -38,6 +38,60 @@ stitches! {
     Ch { us: "ch", uk: "ch", us_name: "chain", uk_name: "chain", works: 0, makes: 0, height: 1.0 }
     /// Slip stitch.
     SlSt { us: "sl st", uk: "ss", us_name: "slip stitch", uk_name: "slip stitch", works: 1, makes: 1, height: 0.3 }
+    /// Half double crochet.
+    Hdc { us: "hdc", uk: "htr", us_name: "half double crochet", uk_name: "half treble", works: 1, makes: 1, height: 2.0 }
+    /// Double crochet.
+    Dc { us: "dc", uk: "tr", us_name: "double crochet", uk_name: "treble", works: 1, makes: 1, height: 3.0 }
+    /// Treble crochet.
+    Tr { us: "tr", uk: "dtr", us_name: "treble crochet", uk_name: "double treble", works: 1, makes: 1, height: 4.0 }
+    /// Double treble crochet.
+    Dtr { us: "dtr", uk: "trtr", us_name: "double treble crochet", uk_name: "triple treble", works: 1, makes: 1, height: 5.0 }
+    /// Triple treble crochet.
+    Trtr { us: "trtr", uk: "qtr", us_name: "triple treble crochet", uk_name: "quadruple treble", works: 1, makes: 1, height: 6.0 }
+    /// Extended single crochet.
+    Esc { us: "esc", uk: "edc", us_name: "extended single crochet", uk_name: "extended double crochet", works: 1, makes: 1, height: 2.0 }
+    /// Extended half double crochet.
+    Ehdc { us: "ehdc", uk: "ehtr", us_name: "extended half double crochet", uk_name: "extended half treble", works: 1, makes: 1, height: 3.0 }
+    /// Extended double crochet.
+    Edc { us: "edc", uk: "etr", us_name: "extended double crochet", uk_name: "extended treble", works: 1, makes: 1, height: 4.0 }
+    /// Extended treble crochet.
+    Etr { us: "etr", uk: "edtr", us_name: "extended treble crochet", uk_name: "extended double treble", works: 1, makes: 1, height: 5.0 }
+    /// Reverse single crochet (crab stitch).
+    Rsc { us: "rsc", uk: "rdc", us_name: "reverse single crochet", uk_name: "reverse double crochet", works: 1, makes: 1, height: 1.0 }
+    /// Front post single crochet.
+    Fpsc { us: "FPsc", uk: "FPdc", us_name: "front post single crochet", uk_name: "front post double crochet", works: 1, makes: 1, height: 1.0 }
+    /// Front post half double crochet.
+    Fphdc { us: "FPhdc", uk: "FPhtr", us_name: "front post half double crochet", uk_name: "front post half treble", works: 1, makes: 1, height: 2.0 }
+    /// Front post double crochet.
+    Fpdc { us: "FPdc", uk: "FPtr", us_name: "front post double crochet", uk_name: "front post treble", works: 1, makes: 1, height: 3.0 }
+    /// Front post treble crochet.
+    Fptr { us: "FPtr", uk: "FPdtr", us_name: "front post treble crochet", uk_name: "front post double treble", works: 1, makes: 1, height: 4.0 }
+    /// Front post double treble crochet.
+    Fpdtr { us: "FPdtr", uk: "FPtrtr", us_name: "front post double treble crochet", uk_name: "front post triple treble", works: 1, makes: 1, height: 5.0 }
+    /// Back post single crochet.
+    Bpsc { us: "BPsc", uk: "BPdc", us_name: "back post single crochet", uk_name: "back post double crochet", works: 1, makes: 1, height: 1.0 }
+    /// Back post half double crochet.
+    Bphdc { us: "BPhdc", uk: "BPhtr", us_name: "back post half double crochet", uk_name: "back post half treble", works: 1, makes: 1, height: 2.0 }
+    /// Back post double crochet.
+    Bpdc { us: "BPdc", uk: "BPtr", us_name: "back post double crochet", uk_name: "back post treble", works: 1, makes: 1, height: 3.0 }
+    /// Back post treble crochet.
+    Bptr { us: "BPtr", uk: "BPdtr", us_name: "back post treble crochet", uk_name: "back post double treble", works: 1, makes: 1, height: 4.0 }
+    /// Back post double treble crochet.
+    Bpdtr { us: "BPdtr", uk: "BPtrtr", us_name: "back post double treble crochet", uk_name: "back post triple treble", works: 1, makes: 1, height: 5.0 }
+    /// Bobble: several stitches closed together in one loop, counted as one stitch.
+    Bobble { us: "bo", uk: "bo", us_name: "bobble", uk_name: "bobble", works: 1, makes: 1, height: 3.0 }
+    /// Popcorn: several stitches in one loop, drawn together, counted as one stitch.
+    Popcorn { us: "pc", uk: "pc", us_name: "popcorn", uk_name: "popcorn", works: 1, makes: 1, height: 3.0 }
+    /// Puff stitch, counted as one stitch.
+    Puff { us: "puff", uk: "puff", us_name: "puff stitch", uk_name: "puff stitch", works: 1, makes: 1, height: 3.0 }
+    /// Cluster in one loop, counted as one stitch.
+    Cluster { us: "cl", uk: "cl", us_name: "cluster", uk_name: "cluster", works: 1, makes: 1, height: 3.0 }
+    /// Picot: a knot of chains that neither works nor makes a loop.
+    Picot { us: "picot", uk: "picot", us_name: "picot", uk_name: "picot", works: 0, makes: 0, height: 1.0 }
+    /// Foundation single crochet: a stitch that brings its own chain.
+    Fsc { us: "fsc", uk: "fdc", us_name: "foundation single crochet", uk_name: "foundation double crochet", works: 0, makes: 1, height: 1.0 }
+    /// A stitch that the pattern defines itself by the loops it works and makes.
+    Special { us: "special", uk: "special", us_name: "special stitch", uk_name: "special stitch", works: 1, makes: 1, height: 1.0 }
 }
 
 /// Where the hook goes in.
