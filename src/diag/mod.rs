@@ -1,6 +1,8 @@
 //! Diagnostics as data: sources with their spans, findings with labels and fixes, and the sink that collects them.
 
 pub mod code;
+pub mod position;
+pub mod render;
 
 pub use code::{Code, Severity};
 
@@ -124,7 +126,14 @@ impl<'l> Sources<'l> {
 
     /// The file and the byte range of a span.
     pub fn locate(&self, span: Span) -> Option<(&Source, Range<usize>)> {
-        self.files.iter().find_map(|file| Some((&**file, file.range(span)?)))
+        self.find(span).map(|(_, file, range)| (file, range))
+    }
+
+    /// The file of a span with its number in the order of opening.
+    fn find(&self, span: Span) -> Option<(usize, &Source, Range<usize>)> {
+        let index = self.files.partition_point(|file| file.base <= span.start).checked_sub(1)?;
+        let file = self.files.get(index)?;
+        Some((index, file, file.range(span)?))
     }
 
     /// The opened files in order.
