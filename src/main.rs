@@ -1,3 +1,7 @@
-//! The command line.
+//! The `picot` binary: the command line and nothing else.
 
-fn main() {}
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::main()
+}

@@ -2,6 +2,7 @@
 
 use crate::diag::Sink;
 use crate::ir::verify::Verified;
+use crate::settings;
 use serde::de::DeserializeOwned;
 use std::io;
 
@@ -51,6 +52,7 @@ pub struct Target {
     /// True when the output is no text.
     pub binary: bool,
     configure: fn(toml::Table) -> Result<Box<dyn Backend>, toml::de::Error>,
+    keys: fn() -> &'static [&'static str],
 }
 
 impl std::fmt::Debug for Target {
@@ -68,7 +70,12 @@ impl Target {
             about: F::ABOUT,
             binary: F::BINARY,
             configure: |table| Ok(Box::new(F::deserialize(table)?)),
+            keys: settings::keys::<F>,
         }
+    }
+    /// The names of its options.
+    pub fn keys(&self) -> &'static [&'static str] {
+        (self.keys)()
     }
     /// The backend with the options of a table; unknown keys and wrong types are errors.
     pub fn configure(&self, options: toml::Table) -> Result<Box<dyn Backend>, toml::de::Error> {
@@ -82,4 +89,9 @@ pub static TARGETS: &[Target] = &[];
 /// The target with this name.
 pub fn target(name: &str) -> Option<&'static Target> {
     TARGETS.iter().find(|target| target.name == name)
+}
+
+/// The target that a file extension (without the dot, in any case) stands for.
+pub fn target_for_extension(extension: &str) -> Option<&'static Target> {
+    TARGETS.iter().find(|target| target.extension.eq_ignore_ascii_case(extension))
 }

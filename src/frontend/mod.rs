@@ -28,3 +28,13 @@ pub struct Reader {
 
 /// Every reader.
 pub static READERS: &[Reader] = &[];
+
+/// The reader with this name.
+pub fn reader(name: &str) -> Option<&'static Reader> {
+    READERS.iter().find(|reader| reader.name == name)
+}
+
+/// The reader that a file extension (without the dot, in any case) stands for.
+pub fn reader_for_extension(extension: &str) -> Option<&'static Reader> {
+    READERS.iter().find(|reader| reader.extensions.iter().any(|known| known.eq_ignore_ascii_case(extension)))
+}

@@ -1,0 +1,198 @@
+//! What may stand on the command line: types for clap, and nothing that acts.
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use picot::backends::TARGETS;
+use picot::frontend::READERS;
+use picot::ir::Gauge;
+
+const EXAMPLES: &str = "\
+Examples:
+  picot build shapes/ball.toml                    print the pattern
+  picot build shapes/ball.toml -o ball.txt -o ball.json
+";
+
+/// Compiles 3D shapes to textile instructions.
+#[derive(Debug, Parser)]
+#[command(name = "picot", version, arg_required_else_help = true, after_help = EXAMPLES, max_term_width = 100)]
+pub(crate) struct Cli {
+    #[command(flatten)]
+    pub(crate) global: Global,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// What every command takes.
+#[derive(Debug, Args)]
+pub(crate) struct Global {
+    /// Color in messages
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto", hide_possible_values = true)]
+    pub(crate) color: Color,
+    /// Only errors and warnings on stderr
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
+}
+
+/// When messages have color.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Color {
+    /// On a terminal, unless `NO_COLOR` is set.
+    Auto,
+    /// Also into files and pipes.
+    Always,
+    /// Never.
+    Never,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Compile a shape to a pattern and other outputs
+    Build(Build),
+    /// List what there is: targets, readers, passes, stitches, diagnostic codes
+    List(List),
+    /// Explain a diagnostic, such as E0101
+    Explain(Explain),
+    /// Print the completion script of a shell
+    Completions(Completions),
+    /// Print the manual page
+    Man(Man),
+}
+
+/// How inputs are read; for every command with an input.
+#[derive(Debug, Args)]
+pub(crate) struct Reading {
+    /// Format of the input, where its extension does not tell
+    #[arg(long, value_name = "READER", value_parser = readers())]
+    pub(crate) from: Option<String>,
+    /// Stitch size in place of the file's own, such as 2.5mmx2.5mm
+    #[arg(long, value_name = "WxH", value_parser = gauge)]
+    pub(crate) gauge: Option<Gauge>,
+    /// Set an option of the generator or of a target (`picot list targets` shows the keys)
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub(crate) set: Vec<(String, toml::Value)>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  picot build shapes/ball.toml                    print the pattern
+  picot build a.toml b.toml --to json -o out/     one file for each input
+  cat ball.toml | picot build - --from shape -o ball.txt")]
+pub(crate) struct Build {
+    /// Shape files or patterns; `-` is stdin
+    #[arg(required = true, value_name = "INPUT")]
+    pub(crate) inputs: Vec<String>,
+    /// Target, where the extension of the output does not tell
+    #[arg(long, value_name = "TARGET", value_parser = targets())]
+    pub(crate) to: Vec<String>,
+    /// Output file; `-` is stdout, and a directory takes one file for each input and target
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Vec<String>,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    /// Print a level of the compiler instead of a target
+    #[arg(long, value_name = "LEVEL", conflicts_with_all = ["to", "output"])]
+    pub(crate) dump: Option<Level>,
+    /// Print how long each stage took
+    #[arg(long)]
+    pub(crate) timings: bool,
+}
+
+/// A level of the compiler.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Level {
+    /// Where each stitch lies.
+    Graph,
+    /// What the hook does.
+    Pattern,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct List {
+    /// What to list
+    pub(crate) what: Topic,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// A table of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Topic {
+    /// Output formats with their options.
+    Targets,
+    /// Input formats.
+    Readers,
+    /// Passes over a pattern, in order.
+    Passes,
+    /// Stitches in US and UK terms.
+    Stitches,
+    /// Diagnostic codes.
+    Codes,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Explain {
+    /// The code of a diagnostic
+    pub(crate) code: String,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Completions {
+    /// The shell
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Man {
+    /// A command; without it the page of picot itself
+    pub(crate) command: Option<String>,
+}
+
+fn targets() -> PossibleValuesParser {
+    PossibleValuesParser::new(TARGETS.iter().map(|target| target.name))
+}
+
+fn readers() -> PossibleValuesParser {
+    PossibleValuesParser::new(READERS.iter().map(|reader| reader.name))
+}
+
+fn setting(text: &str) -> Result<(String, toml::Value), String> {
+    picot::settings::parse(text).ok_or_else(|| "expected KEY=VALUE".to_owned())
+}
+
+/// Reads a stitch size such as `2.5mmx2.5mm`; a bare number is in mm.
+fn gauge(text: &str) -> Result<Gauge, String> {
+    let wrong = || "expected WIDTHxHEIGHT, for example 2.5mmx2.5mm".to_owned();
+    let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
+    let length = |text: &str| {
+        let text = text.trim();
+        let units = [("mm", 1.0), ("cm", 10.0), ("in", 25.4)];
+        let (number, unit) =
+            units.iter().find_map(|(unit, mm)| Some((text.strip_suffix(unit)?, *mm))).unwrap_or((text, 1.0));
+        let length = number.trim_end().parse::<f64>().ok()? * unit;
+        (length.is_finite() && length > 0.0).then_some(length)
+    };
+    Ok(Gauge::new(length(width).ok_or_else(wrong)?, length(height).ok_or_else(wrong)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gauge_reads_units_and_refuses_what_is_no_size() {
+        assert_eq!(gauge("2.5mmx2.5mm"), Ok(Gauge::new(2.5, 2.5)));
+        assert_eq!(gauge("0.25cm x 1in"), Ok(Gauge::new(2.5, 25.4)));
+        assert_eq!(gauge("2×3"), Ok(Gauge::new(2.0, 3.0)));
+        for text in ["", "2.5mm", "0x1", "-1x1", "nanx1", "infx1", "1x", "1 kmx1"] {
+            assert!(gauge(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        use clap::CommandFactory;
+        Cli::command().debug_assert();
+    }
+}

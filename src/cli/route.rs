@@ -1,0 +1,67 @@
+//! `--set KEY=VALUE` finds its owner: the generator's options, or the options of a target.
+
+use super::Failure;
+use super::args::Reading;
+use picot::backends::{TARGETS, Target};
+use picot::diag::did_you_mean;
+use picot::generate;
+
+/// The settings of a run, each with its owner.
+#[derive(Debug)]
+pub(crate) struct Routed {
+    /// For the stages before printing.
+    pub(crate) options: picot::Options,
+    /// For the targets, in the order in which they were asked for.
+    pub(crate) tables: Vec<toml::Table>,
+}
+
+/// Hands each setting to all who have its key. A key that no one has, or a value of the wrong type, is wrong usage.
+pub(crate) fn route(reading: &Reading, targets: &[&'static Target]) -> Result<Routed, Failure> {
+    let generator = picot::settings::keys::<generate::Options>();
+    let mut general = toml::Table::new();
+    let mut tables = vec![toml::Table::new(); targets.len()];
+    for (key, value) in &reading.set {
+        let mut known = false;
+        if generator.contains(&key.as_str()) {
+            known = true;
+            let alone = toml::Table::from_iter([(key.clone(), value.clone())]);
+            alone.try_into::<generate::Options>().map_err(|error| wrong_value(key, &error))?;
+            general.insert(key.clone(), value.clone());
+        }
+        for (target, table) in targets.iter().zip(&mut tables) {
+            if target.keys().contains(&key.as_str()) {
+                known = true;
+                let alone = toml::Table::from_iter([(key.clone(), value.clone())]);
+                target.configure(alone).map_err(|error| wrong_value(key, &error))?;
+                table.insert(key.clone(), value.clone());
+            }
+        }
+        if !known {
+            return Err(unknown(key, generator, targets));
+        }
+    }
+    for (target, table) in targets.iter().zip(&tables) {
+        target.configure(table.clone()).map_err(|error| wrong_value(target.name, &error))?;
+    }
+    let generate = general.try_into().map_err(|error| wrong_value("the generator", &error))?;
+    Ok(Routed { options: picot::Options { gauge: reading.gauge, generate }, tables })
+}
+
+fn wrong_value(key: &str, error: &toml::de::Error) -> Failure {
+    Failure::usage(format!("--set {key}: {}", error.message().lines().next().unwrap_or("wrong value")))
+}
+
+fn unknown(key: &str, generator: &[&'static str], targets: &[&'static Target]) -> Failure {
+    let failure = Failure::usage(format!("--set {key}: there is no such option"));
+    let owners: Vec<&str> =
+        TARGETS.iter().filter(|target| target.keys().contains(&key)).map(|target| target.name).collect();
+    if !owners.is_empty() {
+        return failure.help(format!("it belongs to the target {}", owners.join(", ")));
+    }
+    let keys =
+        || generator.iter().copied().chain(targets.iter().flat_map(|target| target.keys().iter().copied()));
+    match did_you_mean(key, keys()) {
+        Some(near) => failure.help(format!("did you mean `{near}`?")),
+        None => failure.help(format!("the options are {}", keys().collect::<Vec<_>>().join(", "))),
+    }
+}
