@@ -1,5 +1,15 @@
 //! Shapes as continuous surfaces: the trait that any parametric surface implements, and the object made of them.
 
+pub mod bezier;
+pub mod frame;
+mod profile;
+pub mod spec;
+pub mod sweep;
+
+pub use bezier::Bezier;
+pub use spec::{Fault, Interpolation, Profile, Section, TubeSpec};
+pub use sweep::Sweep;
+
 use crate::ir::Gauge;
 use glam::DVec3;
 use std::fmt;

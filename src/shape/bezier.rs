@@ -1,0 +1,299 @@
+//! Control curves: Bézier segments of degree 1 to 3 and chains of them, with exact derivatives and arc length.
+
+use glam::DVec3;
+
+/// One Bézier segment of degree 1 to 3.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bezier {
+    points: [DVec3; 4],
+    degree: u8,
+}
+
+impl Bezier {
+    /// A segment by its control points in mm; `None` unless there are two, three or four of them.
+    pub fn new(points: &[DVec3]) -> Option<Self> {
+        match *points {
+            [a, b] => Some(Self::line(a, b)),
+            [a, b, c] => Some(Self { points: [a, b, c, c], degree: 2 }),
+            [a, b, c, d] => Some(Self { points: [a, b, c, d], degree: 3 }),
+            _ => None,
+        }
+    }
+
+    /// A straight segment.
+    pub fn line(start: DVec3, end: DVec3) -> Self {
+        Self { points: [start, end, end, end], degree: 1 }
+    }
+
+    /// The control points, in mm.
+    pub fn points(&self) -> &[DVec3] {
+        self.points.split_at(usize::from(self.degree) + 1).0
+    }
+
+    /// The degree, 1 to 3.
+    pub fn degree(&self) -> u8 {
+        self.degree
+    }
+
+    /// Position at `t` in mm.
+    pub fn point(&self, t: f64) -> DVec3 {
+        bernstein3(&self.cubic(), t)
+    }
+
+    /// First derivative by `t`.
+    pub fn derivative(&self, t: f64) -> DVec3 {
+        bernstein2(&self.hodograph(), t)
+    }
+
+    /// Second derivative by `t`.
+    pub fn second_derivative(&self, t: f64) -> DVec3 {
+        let [a, b, c] = self.hodograph();
+        2.0 * ((b - a) * (1.0 - t) + (c - b) * t)
+    }
+
+    /// Arc length of `t` in [0, 1] in mm, to about 1e-9 of it for curves without cusps.
+    pub fn length(&self) -> f64 {
+        let hodograph = self.hodograph();
+        (0..16)
+            .map(|i| {
+                integrate(f64::from(i) / 16.0, f64::from(i + 1) / 16.0, |t| {
+                    bernstein2(&hodograph, t).length()
+                })
+            })
+            .sum()
+    }
+
+    /// The same curve as a cubic: its four control points.
+    fn cubic(&self) -> [DVec3; 4] {
+        let [a, b, c, d] = self.points;
+        match self.degree {
+            1 => [a, a.lerp(b, 1.0 / 3.0), a.lerp(b, 2.0 / 3.0), b],
+            2 => [a, (a + 2.0 * b) / 3.0, (2.0 * b + c) / 3.0, c],
+            _ => [a, b, c, d],
+        }
+    }
+
+    /// Coefficients of the first derivative in the Bernstein basis of degree 2.
+    fn hodograph(&self) -> [DVec3; 3] {
+        let [a, b, c, d] = self.points;
+        match self.degree {
+            1 => [b - a; 3],
+            2 => [2.0 * (b - a), c - a, 2.0 * (c - b)],
+            _ => [3.0 * (b - a), 3.0 * (c - b), 3.0 * (d - c)],
+        }
+    }
+}
+
+#[inline]
+fn bernstein3(c: &[DVec3; 4], t: f64) -> DVec3 {
+    let s = 1.0 - t;
+    c[0] * (s * s * s) + c[1] * (3.0 * s * s * t) + c[2] * (3.0 * s * t * t) + c[3] * (t * t * t)
+}
+
+#[inline]
+fn bernstein2(c: &[DVec3; 3], t: f64) -> DVec3 {
+    let s = 1.0 - t;
+    c[0] * (s * s) + c[1] * (2.0 * s * t) + c[2] * (t * t)
+}
+
+/// Five-point Gauss-Legendre quadrature of `f` over [`a`, `b`]: exact for polynomials up to degree 9.
+pub fn integrate(a: f64, b: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+    const NODES: [(f64, f64); 3] = [
+        (0.0, 0.568_888_888_888_888_9),
+        (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+        (0.906_179_845_938_664, 0.236_926_885_056_189_08),
+    ];
+    let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
+    let [(_, center), (inner, inner_weight), (outer, outer_weight)] = NODES;
+    half * (center * f(middle)
+        + inner_weight * (f(middle - half * inner) + f(middle + half * inner))
+        + outer_weight * (f(middle - half * outer) + f(middle + half * outer)))
+}
+
+/// A place on a [`Chain`]: position, unit tangent and their rates of change by the chain's parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Position in mm.
+    pub point: DVec3,
+    /// Unit tangent.
+    pub tangent: DVec3,
+    /// Length of the first derivative: mm a unit of the parameter.
+    pub speed: f64,
+    /// Derivative of the unit tangent: curvature times speed, toward the inner side.
+    pub turn: DVec3,
+}
+
+impl Place {
+    /// Curvature in 1/mm; infinite where the curve stands still and turns.
+    pub fn curvature(&self) -> f64 {
+        let turn = self.turn.length();
+        if turn == 0.0 { 0.0 } else { turn / self.speed }
+    }
+}
+
+/// One segment ready for evaluation. Its derivative is `t^rise (1 - t)^fall` times `direction`, and `direction`
+/// does not vanish at the ends, so the tangent is sound where control points coincide.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    points: [DVec3; 4],
+    direction: [DVec3; 3],
+    rise: u8,
+    fall: u8,
+}
+
+impl Piece {
+    /// `None` for a segment without extent.
+    fn new(bezier: &Bezier) -> Option<Self> {
+        let [a, b, c] = bezier.hodograph();
+        let scale = a.length().max(b.length()).max(c.length());
+        let none = |e: DVec3| e.length() <= 1e-9 * scale;
+        if scale.is_nan() || scale <= 0.0 {
+            return None;
+        }
+        let linear = |p: DVec3, q: DVec3| [p, (p + q) * 0.5, q];
+        let (direction, rise, fall) = match (none(a), none(b), none(c)) {
+            (false, _, false) => ([a, b, c], 0, 0),
+            (true, false, true) => ([2.0 * b; 3], 1, 1),
+            (true, true, _) => ([c; 3], 2, 0),
+            (false, true, true) => ([a; 3], 0, 2),
+            (true, false, false) => (linear(2.0 * b, c), 1, 0),
+            (false, false, true) => (linear(a, 2.0 * b), 0, 1),
+        };
+        Some(Self { points: bezier.cubic(), direction, rise, fall })
+    }
+
+    #[inline]
+    fn pace(&self, t: f64) -> f64 {
+        if self.rise | self.fall == 0 {
+            return 1.0;
+        }
+        let power = |x: f64, n: u8| match n {
+            0 => 1.0,
+            1 => x,
+            _ => x * x,
+        };
+        power(t, self.rise) * power(1.0 - t, self.fall)
+    }
+}
+
+/// A chain of segments with one parameter in [0, 1], of which every segment takes an equal share; the parameter
+/// of a single segment is the plain Bézier parameter.
+#[derive(Clone, Debug)]
+pub struct Chain {
+    pieces: Vec<Piece>,
+    /// Arc length at the ends of equal shares of the parameter, `STEPS` a segment.
+    lengths: Vec<f64>,
+}
+
+/// Entries of the arc length table a segment.
+const STEPS: usize = 32;
+
+impl Chain {
+    /// A chain of the given segments; the index of the first segment without extent otherwise (0 if there is
+    /// no segment at all). Segments are taken as they are: joints are not checked.
+    pub fn new(segments: &[Bezier]) -> Result<Self, usize> {
+        if segments.is_empty() {
+            return Err(0);
+        }
+        let mut pieces = Vec::with_capacity(segments.len());
+        for (i, segment) in segments.iter().enumerate() {
+            pieces.push(Piece::new(segment).ok_or(i)?);
+        }
+        let mut chain = Self { pieces, lengths: Vec::new() };
+        let count = segments.len() * STEPS;
+        let mut total = 0.0;
+        let mut lengths = Vec::with_capacity(count + 1);
+        lengths.push(0.0);
+        for k in 0..count {
+            let at = |i: usize| i as f64 / count as f64;
+            total += integrate(at(k), at(k + 1), |u| chain.at(u).speed);
+            lengths.push(total);
+        }
+        chain.lengths = lengths;
+        Ok(chain)
+    }
+
+    /// Number of segments.
+    pub fn segments(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// The segment that holds parameter `u` and the segment's own parameter there. A joint belongs to the
+    /// segment after it.
+    #[inline]
+    pub fn locate(&self, u: f64) -> (usize, f64) {
+        let scaled = u.clamp(0.0, 1.0) * self.pieces.len() as f64;
+        let segment = (scaled as usize).min(self.pieces.len() - 1);
+        (segment, scaled - segment as f64)
+    }
+
+    /// The place at parameter `u`, which is clamped to [0, 1].
+    #[inline]
+    pub fn at(&self, u: f64) -> Place {
+        let (segment, t) = self.locate(u);
+        self.place(segment, t)
+    }
+
+    /// The place at parameter `t` of one segment; this way both sides of a joint can be seen.
+    #[inline]
+    pub fn place(&self, segment: usize, t: f64) -> Place {
+        let piece = &self.pieces[segment.min(self.pieces.len() - 1)];
+        let count = self.pieces.len() as f64;
+        let direction = bernstein2(&piece.direction, t);
+        let [a, b, c] = piece.direction;
+        let change = 2.0 * ((b - a) * (1.0 - t) + (c - b) * t);
+        let size = direction.length();
+        let inverse = 1.0 / size;
+        let tangent = direction * inverse;
+        Place {
+            point: bernstein3(&piece.points, t),
+            tangent,
+            speed: size * piece.pace(t) * count,
+            turn: (change - tangent * change.dot(tangent)) * (inverse * count),
+        }
+    }
+
+    /// Position at parameter `u` in mm.
+    pub fn point(&self, u: f64) -> DVec3 {
+        let (segment, t) = self.locate(u);
+        bernstein3(&self.pieces[segment].points, t)
+    }
+
+    /// Arc length of the whole chain in mm.
+    pub fn length(&self) -> f64 {
+        self.lengths.last().copied().unwrap_or(0.0)
+    }
+
+    /// Arc length from the start to parameter `u` in mm.
+    pub fn length_to(&self, u: f64) -> f64 {
+        let count = self.lengths.len() - 1;
+        let scaled = u.clamp(0.0, 1.0) * count as f64;
+        let step = (scaled as usize).min(count - 1);
+        let from = step as f64 / count as f64;
+        self.lengths[step] + integrate(from, scaled / count as f64, |u| self.at(u).speed)
+    }
+
+    /// The parameter at arc length `length` in mm: the inverse of [`Chain::length_to`], clamped to [0, 1].
+    pub fn parameter_at(&self, length: f64) -> f64 {
+        let count = self.lengths.len() - 1;
+        let step = self.lengths.partition_point(|&l| l <= length).clamp(1, count) - 1;
+        let (mut low, mut high) = (step as f64 / count as f64, (step + 1) as f64 / count as f64);
+        let share = (length - self.lengths[step]) / (self.lengths[step + 1] - self.lengths[step]);
+        let mut u = low + (high - low) * share.clamp(0.0, 1.0);
+        // Newton inside a shrinking bracket, for the speed may vanish at an end.
+        for _ in 0..40 {
+            let miss = self.length_to(u) - length;
+            if miss > 0.0 {
+                high = u;
+            } else {
+                low = u;
+            }
+            if miss.abs() <= 1e-13 * self.length() {
+                break;
+            }
+            let next = u - miss / self.at(u).speed;
+            u = if next > low && next < high { next } else { 0.5 * (low + high) };
+        }
+        u.clamp(0.0, 1.0)
+    }
+}

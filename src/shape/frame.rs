@@ -1,0 +1,152 @@
+//! Rotation-minimizing frames along a chain by double reflection (Wang, Jüttler, Zheng and Liu 2008).
+
+use super::bezier::{Chain, Place};
+use glam::DVec3;
+
+/// Frames of a chain: a table of stations from which a frame anywhere is one reflection step away.
+#[derive(Clone, Debug)]
+pub struct Frames {
+    stations: Vec<Station>,
+    per_segment: usize,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Station {
+    point: DVec3,
+    tangent: DVec3,
+    axis: DVec3,
+}
+
+/// Where a chain has no sound frame: the tangent jumps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jump {
+    /// Parameter of the chain.
+    pub u: f64,
+    /// Angle of the jump in degrees.
+    pub degrees: f64,
+}
+
+/// Largest tangent jump at a joint that passes for rounding of the numbers in a file, in degrees.
+pub const JOINT_DEGREES: f64 = 2.0;
+/// Largest turn between two stations in radians; more stations are taken where there is more.
+const STEP_TURN: f64 = 0.05;
+const MOST_STATIONS: usize = 1 << 16;
+
+impl Frames {
+    /// The frames of a chain. The first axis is the coordinate axis that is most across the tangent, made orthogonal.
+    pub fn new(chain: &Chain) -> Result<Self, Jump> {
+        let segments = chain.segments();
+        for joint in 1..segments {
+            let (before, after) = (chain.place(joint - 1, 1.0), chain.place(joint, 0.0));
+            let degrees = angle(before.tangent, after.tangent).to_degrees();
+            if degrees.is_nan() || degrees > JOINT_DEGREES {
+                return Err(Jump { u: joint as f64 / segments as f64, degrees });
+            }
+        }
+        let mut per_segment = (256 / segments).clamp(8, 128);
+        loop {
+            let most = (MOST_STATIONS / segments).clamp(8, 8192);
+            let (turn, u) = largest_turn(chain, per_segment);
+            if turn.is_nan() || (turn > STEP_TURN && per_segment >= most && turn > 0.5) {
+                return Err(Jump { u, degrees: turn.to_degrees() });
+            }
+            if turn <= STEP_TURN || per_segment >= most {
+                break;
+            }
+            per_segment *= 2;
+        }
+        let mut stations = Vec::with_capacity(segments * per_segment);
+        let first = chain.place(0, 0.0);
+        let mut last = Station { point: first.point, tangent: first.tangent, axis: across(first.tangent) };
+        for segment in 0..segments {
+            for k in 0..per_segment {
+                let place = chain.place(segment, k as f64 / per_segment as f64);
+                last = Station { point: place.point, tangent: place.tangent, axis: last.carry(&place) };
+                stations.push(last);
+            }
+        }
+        Ok(Self { stations, per_segment })
+    }
+
+    /// The axis of the frame at parameter `t` of a segment, where the chain is at `place`: a unit vector across
+    /// the tangent. The third axis is tangent x axis. The frame turns about the tangent nowhere, so the
+    /// derivative of any vector q fixed in its cross plane is -(turn . q) tangent.
+    #[inline]
+    pub fn axis(&self, segment: usize, t: f64, place: &Place) -> DVec3 {
+        let step = ((t * self.per_segment as f64) as usize).min(self.per_segment - 1);
+        let index = (segment * self.per_segment + step).min(self.stations.len() - 1);
+        self.stations[index].carry(place)
+    }
+
+    /// The axis at parameter `u` of the chain these frames were made for.
+    pub fn at(&self, chain: &Chain, u: f64) -> DVec3 {
+        let (segment, t) = chain.locate(u);
+        self.axis(segment, t, &chain.place(segment, t))
+    }
+}
+
+impl Station {
+    /// The axis carried to another place by two reflections: the first in the plane halfway between the points,
+    /// the second such that the tangents match.
+    #[inline]
+    fn carry(&self, to: &Place) -> DVec3 {
+        let chord = to.point - self.point;
+        let square = chord.length_squared();
+        let flat = |axis: DVec3, tangent: DVec3| {
+            // No distance to reflect over: turn the axis by the least rotation that takes one tangent to the other.
+            axis - (tangent + to.tangent) * (to.tangent.dot(axis) / (1.0 + tangent.dot(to.tangent)))
+        };
+        let axis = if square <= 1e-20 * (1.0 + self.point.length_squared()) {
+            flat(self.axis, self.tangent)
+        } else {
+            let scale = 2.0 / square;
+            let axis = self.axis - chord * (scale * chord.dot(self.axis));
+            let tangent = self.tangent - chord * (scale * chord.dot(self.tangent));
+            let mirror = to.tangent - tangent;
+            let square = mirror.length_squared();
+            if square < 1e-18 { axis } else { axis - mirror * (2.0 / square * mirror.dot(axis)) }
+        };
+        let axis = axis - to.tangent * axis.dot(to.tangent);
+        axis * (1.0 / axis.length())
+    }
+}
+
+/// Angle between two unit vectors in radians, exact for small angles too.
+fn angle(a: DVec3, b: DVec3) -> f64 {
+    crate::math::atan2(a.cross(b).length(), a.dot(b))
+}
+
+/// Largest angle between the tangents of neighboring stations, with the parameter where it is.
+fn largest_turn(chain: &Chain, per_segment: usize) -> (f64, f64) {
+    let segments = chain.segments();
+    let (mut most, mut at) = (0.0, 0.0);
+    for segment in 0..segments {
+        let mut last = chain.place(segment, 0.0).tangent;
+        for k in 1..=per_segment {
+            let t = k as f64 / per_segment as f64;
+            let tangent = chain.place(segment, t).tangent;
+            let turn = angle(last, tangent);
+            if turn.is_nan() {
+                return (f64::NAN, (segment as f64 + t) / segments as f64);
+            }
+            if turn > most {
+                (most, at) = (turn, (segment as f64 + t - 0.5 / per_segment as f64) / segments as f64);
+            }
+            last = tangent;
+        }
+    }
+    (most, at)
+}
+
+/// The coordinate axis with the smallest component of the unit vector `tangent`, made orthogonal to it.
+fn across(tangent: DVec3) -> DVec3 {
+    let size = tangent.abs();
+    let axis = if size.x <= size.y && size.x <= size.z {
+        DVec3::X
+    } else if size.y <= size.z {
+        DVec3::Y
+    } else {
+        DVec3::Z
+    };
+    (axis - tangent * tangent.dot(axis)).normalize()
+}
