@@ -78,12 +78,12 @@ impl Stack {
         let value = |c: &[f64; 4]| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
         let slope = |c: &[f64; 4]| (c[1] + t * (2.0 * c[2] + t * 3.0 * c[3])) * span.inverse;
         let [a, b, x, y] = &span.cubics;
-        let (sin, cos) = sin_cos(TAU * v);
+        let (sin, cos) = sin_cos(-TAU * v);
         let (long, wide) = (value(a), value(b));
         Jet {
             point: DVec3::new(value(x) + long * cos, value(y) + wide * sin, 0.0),
             du: DVec3::new(slope(x) + slope(a) * cos, slope(y) + slope(b) * sin, 0.0),
-            dv: DVec3::new(-TAU * long * sin, TAU * wide * cos, 0.0),
+            dv: DVec3::new(TAU * long * sin, -TAU * wide * cos, 0.0),
         }
     }
 }

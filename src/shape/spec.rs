@@ -33,7 +33,7 @@ pub struct Section {
 /// x points right and y up; for a curve along +z they are the global x and y.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Profile {
-    /// `offset + (axes[0] cos a, axes[1] sin a)`: the axes are radii. A circle has equal axes; both may be 0 at a closed end.
+    /// `offset + (axes[0] cos a, -axes[1] sin a)` with a = 2 pi v: the axes are radii. A circle has equal axes; both may be 0 at a closed end.
     Ellipse {
         /// Radii along x and y.
         axes: [f64; 2],

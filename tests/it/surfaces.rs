@@ -1,4 +1,5 @@
 //! Surfaces against closed forms and finite differences.
+#![expect(clippy::unwrap_used, reason = "helpers of tests")]
 
 use glam::{DVec2, DVec3};
 use picot::shape::{Bezier, End, Interpolation, ParametricSurface, Profile, Section, Sweep, TubeSpec};
@@ -50,6 +51,8 @@ fn paper_shapes_have_their_radius_linear_in_the_bezier_parameter() {
             let center = spec.curve[0].point(u);
             for v in [0.0, 0.2, 0.55, 0.9] {
                 let arm = sweep.point(u, v) - center;
+                let jet = sweep.jet(u, v);
+                assert!(jet.du.cross(jet.dv).dot(arm) > 0.0, "outward at {u}, {v}");
                 assert!((arm.length() - (start + (end - start) * u)).abs() < 1e-12);
                 assert!(arm.normalize().dot(spec.curve[0].derivative(u).normalize()).abs() < 1e-12);
             }
