@@ -17,6 +17,7 @@ pub mod graph;
 pub mod pattern;
 pub mod stitch;
 pub mod verify;
+pub mod yarn;
 
 pub use graph::{Graph, Node, NodeId, Tile};
 pub use pattern::{Block, Direction, Finish, Op, Part, PartId, Pattern, Row, Segment, Start, Step};
@@ -51,8 +52,8 @@ pub enum GaugeOrigin {
     Estimated {
         /// Craft Yarn Council weight number, 0 to 7.
         weight: u8,
-        /// Hook size in tenths of a millimeter.
-        hook: u16,
+        /// The hook.
+        hook: yarn::Hook,
         /// The hook is among the usual ones for this weight.
         in_range: bool,
     },
