@@ -10,6 +10,7 @@ pub mod diag;
 pub mod frontend;
 pub mod generate;
 pub mod ir;
+pub mod lower;
 pub mod math;
 pub mod passes;
 pub mod settings;

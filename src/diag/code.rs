@@ -92,6 +92,25 @@ codes! {
     ///
     /// A short row works back into loops just made. It never outgrows its round.
     BackPassTooLong = "E0302", "the back pass of a short row is too long";
+    /// Loops that are held for a part are not picked up by it, or are picked up twice.
+    ///
+    /// Wrong: `5 sc, hold 8 sts for Arm, 21 sc`, and no part `Arm` that is worked from these loops.
+    /// Right: the same, and later `Arm: from Body rnd 3 sts 6-13 held`.
+    HeldLoops = "E0206", "held loops are not used exactly once";
+    /// A part starts from loops that the part it names does not leave.
+    ///
+    /// A joined part begins with the open loops of finished parts, each used once, and the chains between them. The numbers
+    /// of loops must agree: two legs that end on 14 give 28, and 3 chains between and behind them 34.
+    JoinLoops = "E0207", "joined loops do not add up";
+    /// A back pass is worked over more than 0.6 of its round.
+    ///
+    /// It can be worked, but a short row that long is hard to count and rarely lies flat.
+    BackPassLong = "W0408", "the back pass of a short row is long";
+    /// A decrease takes one loop from either side of a turn.
+    ///
+    /// At the turn of a short row neighboring loops stand one row apart; working them together pulls the fabric.
+    /// Wrong, on 20: `12 sc <- -4 sc -> 3 sc, dec, 7 sc`. Right: `12 sc <- -4 sc -> 2 sc, dec, 8 sc`.
+    SpansTurn = "W0409", "a stitch spans a turn";
     /// A structure of the intermediate representation is broken: a defect of the program that made it.
     ///
     /// Graph and pattern must tell the same steps, references must point to what exists. Please report it.
