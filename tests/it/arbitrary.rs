@@ -121,7 +121,7 @@ pub(crate) fn graph(start: u32, rows: &[Vec<Step>]) -> Graph {
     }
     let place = |id: u32| {
         let tau = f64::from(id) / f64::from(start.max(1));
-        Node { position: DVec3::new(f64::from(id), 0.0, tau), tau, v: tau.fract() }
+        Node { position: DVec3::new(f64::from(id), 0.0, tau), tau, u: 0.0, v: tau.fract() }
     };
     graph.nodes = (0..next).map(place).collect();
     graph
@@ -157,5 +157,15 @@ pub(crate) fn program(start: Start, rows: impl IntoIterator<Item = Row>) -> Prog
         colors: Vec::new(),
         pattern: Pattern { parts: vec![part] },
         graphs: Vec::new(),
+    }
+}
+
+/// Runs that are the same every time.
+pub(crate) fn config(cases: u32) -> proptest::test_runner::Config {
+    proptest::test_runner::Config {
+        cases,
+        rng_seed: proptest::test_runner::RngSeed::Fixed(2026),
+        failure_persistence: None,
+        ..Default::default()
     }
 }

@@ -18,7 +18,7 @@ fn worked(rows: &[Vec<Step>]) -> Vec<Step> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, ..ProptestConfig::default() })]
+    #![proptest_config(arbitrary::config(256))]
 
     #[test]
     fn rounds_come_back_as_they_were(tape in prop::collection::vec(any::<u8>(), 0..500), start in 1_u32..30, count in 1_u32..7) {

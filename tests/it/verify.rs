@@ -245,7 +245,7 @@ fn of_rows(start: u32, rows: &[Vec<Step>]) -> Program {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, ..ProptestConfig::default() })]
+    #![proptest_config(arbitrary::config(256))]
 
     #[test]
     fn workable_rows_pass_with_the_counts_of_the_deque(tape in tape(), start in 1_u32..30, rows in 1_u32..6) {

@@ -24,8 +24,9 @@ fn follow(part: &Part, graph: &Graph) -> Result<(), (String, Option<u32>)> {
     if graph.start != start || (graph.nodes.len() as u64) < u64::from(start) {
         return Err((format!("the graph starts with {} loops, the pattern with {start}", graph.start), None));
     }
-    let finite =
-        |node: &crate::ir::Node| node.position.is_finite() && node.tau.is_finite() && node.v.is_finite();
+    let finite = |node: &crate::ir::Node| {
+        node.position.is_finite() && [node.tau, node.u, node.v].iter().all(|value| value.is_finite())
+    };
     if let Some(index) = graph.nodes.iter().position(|node| !finite(node)) {
         return Err((format!("node {index} has no finite place"), None));
     }
