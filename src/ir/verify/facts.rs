@@ -78,11 +78,13 @@ pub(super) const CHAIN: u64 = 60;
 
 /// Yarn of a stitch in hundredths of a single crochet. Twice as much for two in one loop, 1.55 for two together.
 pub(super) fn yarn(stitch: Stitch) -> u64 {
-    let plain = match stitch.kind {
-        Kind::Skip => return 0,
-        Kind::Ch => return CHAIN,
-        kind => (100.0 * kind.height()).round() as u64,
-    };
+    if stitch.kind == Kind::Skip {
+        return 0;
+    }
+    if stitch.kind == Kind::Ch {
+        return CHAIN;
+    }
+    let plain = (100.0 * stitch.kind.height()).round() as u64;
     let posts = 100 * u64::from(stitch.makes.max(1)) + 55 * u64::from(stitch.works.max(1) - 1);
     plain * posts / 100
 }
