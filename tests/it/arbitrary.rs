@@ -96,7 +96,7 @@ pub(crate) fn graph(start: u32, rows: &[Vec<Step>]) -> Graph {
             Step::Work(stitch) => {
                 let back = direction == Direction::Back;
                 let mut base: Vec<u32> = (0..stitch.works)
-                    .map(|_| if back { ring.pop_back() } else { ring.pop_front() }.unwrap())
+                    .filter_map(|_| if back { ring.pop_back() } else { ring.pop_front() })
                     .collect();
                 let mut top: Vec<u32> = (0..u32::from(stitch.makes)).map(|made| next + made).collect();
                 next += u32::from(stitch.makes);
@@ -107,7 +107,7 @@ pub(crate) fn graph(start: u32, rows: &[Vec<Step>]) -> Graph {
                 } else {
                     ring.extend(&top);
                 }
-                let (base, top) = (Corners::new(&base).unwrap(), Corners::new(&top).unwrap());
+                let [base, top] = [base, top].map(|ids| Corners::new(&ids).unwrap_or_default());
                 graph.tiles.push(Tile { stitch: Some(stitch), direction, base, top });
             }
             Step::Turn(new) => {

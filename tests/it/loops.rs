@@ -57,8 +57,12 @@ pub(crate) fn simulate(start: u32, steps: &[Step], (far, near): Cost) -> Result<
                 }
                 ring.truncate(ring.len() - near);
                 ring.extend((0..near).map(|_| make()));
-                held.into_iter().rev().for_each(|top| ring.push_front(top));
-                tops.into_iter().for_each(|top| ring.push_front(top));
+                for top in held.into_iter().rev() {
+                    ring.push_front(top);
+                }
+                for top in tops {
+                    ring.push_front(top);
+                }
             }
             Step::Hold { loops, .. } => {
                 if ring.len() < loops as usize {
@@ -79,7 +83,7 @@ fn steps(words: &str) -> Vec<Step> {
         ">" => vec![Step::Turn(Direction::Forward)],
         "d" => vec![Step::Work(Stitch::DEC)],
         "i" => vec![Step::Work(Stitch::INC)],
-        count => vec![Step::Work(Stitch::SC); count.parse().unwrap()],
+        count => vec![Step::Work(Stitch::SC); count.parse().expect("a number")],
     };
     words.split_whitespace().flat_map(word).collect()
 }
