@@ -76,7 +76,5 @@ pub fn program(shape: &Shape, options: &Options, sink: &mut Sink<'_>) -> Option<
 /// Runs all [passes](passes::PASSES) in order.
 pub fn fold(program: &mut Program, sink: &mut Sink<'_>) {
     sink.stage("passes");
-    for pass in passes::PASSES {
-        (pass.run)(program, sink);
-    }
+    passes::run(program, sink);
 }

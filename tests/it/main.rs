@@ -2,6 +2,7 @@
 
 mod arbitrary;
 mod loops;
+mod passes;
 mod render;
 mod surfaces;
 mod trace;
