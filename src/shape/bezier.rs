@@ -264,6 +264,15 @@ impl Chain {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
+    /// The parameter at a share in [0, 1] of the arc length, to a thousandth or so: for even samples.
+    pub(super) fn parameter_of_share(&self, share: f64) -> f64 {
+        let count = self.lengths.len() - 1;
+        let length = share * self.length();
+        let step = self.lengths.partition_point(|&l| l <= length).clamp(1, count) - 1;
+        let within = (length - self.lengths[step]) / (self.lengths[step + 1] - self.lengths[step]);
+        ((step as f64 + within.clamp(0.0, 1.0)) / count as f64).clamp(0.0, 1.0)
+    }
+
     /// Arc length from the start to parameter `u` in mm.
     pub fn length_to(&self, u: f64) -> f64 {
         let count = self.lengths.len() - 1;

@@ -1,12 +1,19 @@
 //! Shapes as continuous surfaces: the trait that any parametric surface implements, and the object made of them.
 
+pub mod analytic;
 pub mod bezier;
+mod fold;
 pub mod frame;
+pub mod loops;
+pub mod measure;
+mod meridian;
 mod profile;
+mod smooth;
 pub mod spec;
 pub mod sweep;
 
 pub use bezier::Bezier;
+pub use measure::{area, girth, is_revolution, length_along};
 pub use spec::{Fault, Interpolation, Profile, Section, TubeSpec};
 pub use sweep::Sweep;
 

@@ -1,14 +1,31 @@
 //! Profiles along a curve: the closed line around it at any parameter, interpolated between sections.
 
+use super::loops::LoopStack;
+use super::smooth;
 use super::spec::{Fault, Interpolation, Profile, TubeSpec};
 use super::{End, Jet};
 use crate::math::{TAU, sin_cos};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+
+/// Sections a tube may have.
+const MOST_SECTIONS: usize = 1024;
+/// A closed end thinner than this part of the thickest section is a point.
+const POINT: f64 = 1e-3;
 
 /// The profile at every curve parameter.
 #[derive(Clone, Debug)]
 pub(super) struct Stack {
-    spans: Vec<Span>,
+    kind: Kind,
+    /// Parameters of the sections with 0 and 1 around them, ascending.
+    breaks: Vec<f64>,
+    start_point: bool,
+    end_point: bool,
+}
+
+#[derive(Clone, Debug)]
+enum Kind {
+    Ellipses { spans: Vec<Span>, squared: bool },
+    Loops(LoopStack),
 }
 
 /// A stretch of the curve with one cubic for each number of the profile: two radii and two offsets.
@@ -19,71 +36,210 @@ struct Span {
     cubics: [[f64; 4]; 4],
 }
 
+impl Span {
+    /// Value and slope of a number; `squared` if the cubic is of its square.
+    #[inline]
+    fn number(&self, index: usize, w: f64, squared: bool) -> (f64, f64) {
+        let c = &self.cubics[index];
+        let t = (w - self.start) * self.inverse;
+        let value = c[0] + t * (c[1] + t * (c[2] + t * c[3]));
+        let slope = (c[1] + t * (2.0 * c[2] + t * 3.0 * c[3])) * self.inverse;
+        if squared {
+            let root = value.max(1e-30).sqrt();
+            (root, 0.5 * slope / root)
+        } else {
+            (value, slope)
+        }
+    }
+}
+
 impl Stack {
     pub(super) fn new(spec: &TubeSpec) -> Result<Self, Fault> {
-        let mut knots: Vec<(f64, [f64; 4])> = Vec::with_capacity(spec.sections.len() + 2);
-        for (section, it) in spec.sections.iter().enumerate() {
-            if !it.at.is_finite()
-                || !(0.0..=1.0).contains(&it.at)
-                || knots.last().is_some_and(|k| k.0 >= it.at)
-            {
-                return Err(Fault::SectionOrder { section });
-            }
-            let Profile::Ellipse { axes: [a, b], offset } = it.profile else {
-                return Err(Fault::SectionNotEnclosing { section });
-            };
-            let numbers = [a, b, offset.x, offset.y];
-            if numbers.iter().any(|n| !n.is_finite() || n.abs() > 1e7) {
+        let sections = &spec.sections;
+        if sections.len() > MOST_SECTIONS {
+            return Err(Fault::TooMany { limit: MOST_SECTIONS });
+        }
+        let mut places: Vec<f64> = Vec::with_capacity(sections.len());
+        for (section, it) in sections.iter().enumerate() {
+            if !it.at.is_finite() {
                 return Err(Fault::NotFinite);
             }
-            let closed = (section == 0 && spec.start == End::Closed)
-                || (section + 1 == spec.sections.len() && spec.end == End::Closed);
-            if a < 0.0 || b < 0.0 || (!closed && (a == 0.0 || b == 0.0)) {
-                return Err(Fault::SectionSize { section });
+            if !(0.0..=1.0).contains(&it.at) || places.last().is_some_and(|&last| it.at - last < 1e-9) {
+                return Err(Fault::SectionOrder { section });
             }
-            knots.push((it.at, numbers));
+            places.push(it.at);
         }
-        if let (Some(&first), Some(&last)) = (knots.first(), knots.last()) {
-            if first.0 > 0.0 {
-                knots.insert(0, (0.0, first.1));
-            }
-            if last.0 < 1.0 {
-                knots.push((1.0, last.1));
-            }
+        let points = Self::points(spec)?;
+        let start_point = points.first().copied().unwrap_or(false);
+        let end_point = points.last().copied().unwrap_or(false);
+        let smooth = spec.interpolation == Interpolation::Smooth;
+        let kind = if sections.iter().any(|it| matches!(it.profile, Profile::Loop(_))) {
+            Kind::Loops(LoopStack::new(sections, &points, smooth)?)
+        } else {
+            Kind::Ellipses { spans: ellipse_spans(spec, &points, smooth), squared: smooth }
+        };
+        let mut breaks = places;
+        if breaks.first().is_none_or(|&at| at > 0.0) {
+            breaks.insert(0, 0.0);
         }
-        let spans = knots
-            .windows(2)
-            .map(|pair| {
-                let inverse = 1.0 / (pair[1].0 - pair[0].0);
-                let mut cubics = [[0.0; 4]; 4];
-                for (cubic, (a, b)) in cubics.iter_mut().zip(pair[0].1.iter().zip(pair[1].1)) {
-                    let rise = b - a;
-                    *cubic = match spec.interpolation {
-                        Interpolation::Linear => [*a, rise, 0.0, 0.0],
-                        Interpolation::Smooth => [*a, 0.0, 3.0 * rise, -2.0 * rise],
-                    };
+        if breaks.last().is_none_or(|&at| at < 1.0) {
+            breaks.push(1.0);
+        }
+        Ok(Self { kind, breaks, start_point, end_point })
+    }
+
+    /// Which sections are points, after a look at all sizes.
+    fn points(spec: &TubeSpec) -> Result<Vec<bool>, Fault> {
+        let mut most = 0.0_f64;
+        for (section, it) in spec.sections.iter().enumerate() {
+            match &it.profile {
+                Profile::Ellipse { axes: [a, b], offset } => {
+                    if ![*a, *b, offset.x, offset.y].iter().all(|n| n.is_finite() && n.abs() <= 1e7) {
+                        return Err(Fault::NotFinite);
+                    }
+                    if *a < 0.0 || *b < 0.0 {
+                        return Err(Fault::SectionSize { section });
+                    }
+                    most = most.max(*a).max(*b);
                 }
-                Span { start: pair[0].0, inverse, cubics }
-            })
-            .collect();
-        Ok(Self { spans })
+                Profile::Loop(points) => {
+                    if !points.iter().all(|p| p.is_finite() && p.abs().max_element() <= 1e7) {
+                        return Err(Fault::NotFinite);
+                    }
+                    most = points.iter().fold(most, |most, p| most.max(p.truncate().length()));
+                }
+            }
+        }
+        let last = spec.sections.len() - 1;
+        let tip = |section: usize, at: f64| {
+            (section == 0 && at < 1e-9 && spec.start == End::Closed)
+                || (section == last && at > 1.0 - 1e-9 && spec.end == End::Closed)
+        };
+        let mut points = Vec::with_capacity(spec.sections.len());
+        for (section, it) in spec.sections.iter().enumerate() {
+            let mut point = false;
+            if let Profile::Ellipse { axes: [a, b], .. } = it.profile {
+                point = tip(section, it.at) && a.max(b) <= POINT * most;
+                if !point && a.min(b) <= 1e-9 * most {
+                    return Err(Fault::SectionSize { section });
+                }
+            }
+            points.push(point);
+        }
+        if points.iter().all(|&point| point) {
+            return Err(Fault::SectionSize { section: 0 });
+        }
+        Ok(points)
+    }
+
+    /// Parameters between which the profile is smooth, from 0 to 1.
+    pub(super) fn breaks(&self) -> &[f64] {
+        &self.breaks
+    }
+
+    /// Whether the profile shrinks to a point at the start and at the end.
+    pub(super) fn points_at_ends(&self) -> (bool, bool) {
+        (self.start_point, self.end_point)
+    }
+
+    /// Whether the profile has a part along the tangent.
+    pub(super) fn planar(&self) -> bool {
+        matches!(self.kind, Kind::Ellipses { .. })
+    }
+
+    /// Mean over v of the square of the profile's derivative by the curve parameter.
+    pub(super) fn pace_squared(&self, w: f64) -> f64 {
+        match &self.kind {
+            Kind::Ellipses { spans, squared } => {
+                let span = span_at(spans, w);
+                let slope = |i: usize, squared| span.number(i, w, squared).1;
+                let [a, b] = [slope(0, *squared), slope(1, *squared)];
+                let [x, y] = [slope(2, false), slope(3, false)];
+                0.5 * (a * a + b * b) + x * x + y * y
+            }
+            Kind::Loops(stack) => {
+                (0..8).map(|k| stack.eval(w, f64::from(k) / 8.0).du.length_squared()).sum::<f64>() / 8.0
+            }
+        }
+    }
+
+    /// How far the profile reaches into the direction of `toward`, times its length.
+    pub(super) fn reach(&self, w: f64, toward: DVec2) -> f64 {
+        match &self.kind {
+            Kind::Ellipses { spans, squared } => {
+                let span = span_at(spans, w);
+                let [a, b] = [span.number(0, w, *squared).0, span.number(1, w, *squared).0];
+                let offset = DVec2::new(span.number(2, w, false).0, span.number(3, w, false).0);
+                offset.dot(toward) + (toward * DVec2::new(a, b)).length()
+            }
+            Kind::Loops(stack) => (0..64)
+                .map(|k| stack.eval(w, f64::from(k) / 64.0).point.truncate().dot(toward))
+                .fold(f64::NEG_INFINITY, f64::max),
+        }
     }
 
     /// The profile in the local frame at curve parameter `w`, with its derivatives by `w` and `v`.
     #[inline]
     pub(super) fn eval(&self, w: f64, v: f64) -> Jet {
-        let index = self.spans.partition_point(|span| span.start <= w).max(1) - 1;
-        let span = &self.spans[index];
-        let t = (w - span.start) * span.inverse;
-        let value = |c: &[f64; 4]| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
-        let slope = |c: &[f64; 4]| (c[1] + t * (2.0 * c[2] + t * 3.0 * c[3])) * span.inverse;
-        let [a, b, x, y] = &span.cubics;
+        let (spans, squared) = match &self.kind {
+            Kind::Ellipses { spans, squared } => (spans, *squared),
+            Kind::Loops(stack) => return stack.eval(w, v),
+        };
+        let span = span_at(spans, w);
         let (sin, cos) = sin_cos(-TAU * v);
-        let (long, wide) = (value(a), value(b));
+        let (a, along) = span.number(0, w, squared);
+        let (b, across) = span.number(1, w, squared);
+        let (x, dx) = span.number(2, w, false);
+        let (y, dy) = span.number(3, w, false);
         Jet {
-            point: DVec3::new(value(x) + long * cos, value(y) + wide * sin, 0.0),
-            du: DVec3::new(slope(x) + slope(a) * cos, slope(y) + slope(b) * sin, 0.0),
-            dv: DVec3::new(TAU * long * sin, -TAU * wide * cos, 0.0),
+            point: DVec3::new(x + a * cos, y + b * sin, 0.0),
+            du: DVec3::new(dx + along * cos, dy + across * sin, 0.0),
+            dv: DVec3::new(TAU * a * sin, -TAU * b * cos, 0.0),
         }
     }
+}
+
+#[inline]
+fn span_at(spans: &[Span], w: f64) -> &Span {
+    let index = spans.partition_point(|span| span.start <= w).max(1) - 1;
+    &spans[index]
+}
+
+fn ellipse_spans(spec: &TubeSpec, points: &[bool], smooth: bool) -> Vec<Span> {
+    let places: Vec<f64> = spec.sections.iter().map(|it| it.at).collect();
+    let numbers: Vec<[f64; 4]> = spec
+        .sections
+        .iter()
+        .zip(points)
+        .map(|(it, &point)| match it.profile {
+            Profile::Ellipse { axes: [a, b], offset } => {
+                let size = |n: f64| match (point, smooth) {
+                    (true, _) => 0.0,
+                    (_, true) => n * n,
+                    _ => n,
+                };
+                [size(a), size(b), offset.x, offset.y]
+            }
+            Profile::Loop(_) => [0.0; 4],
+        })
+        .collect();
+    let column = |i: usize| {
+        let column: Vec<f64> = numbers.iter().map(|n| n[i]).collect();
+        smooth::cubics(&places, &column, smooth, i < 2)
+    };
+    let columns = [column(0), column(1), column(2), column(3)];
+    columns[0]
+        .iter()
+        .enumerate()
+        .map(|(i, cubic)| Span {
+            start: cubic.start,
+            inverse: cubic.inverse,
+            cubics: [
+                cubic.coefficients,
+                columns[1][i].coefficients,
+                columns[2][i].coefficients,
+                columns[3][i].coefficients,
+            ],
+        })
+        .collect()
 }

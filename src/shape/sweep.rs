@@ -2,22 +2,50 @@
 
 use super::bezier::{Chain, Place};
 use super::frame::Frames;
+use super::meridian::Meridian;
 use super::profile::Stack;
 use super::spec::{Fault, TubeSpec};
-use super::{Jet, ParametricSurface};
+use super::{End, Jet, ParametricSurface, fold};
 use glam::DVec3;
 use std::ops::Range;
 
-/// A tube made of sections along a curve. Beyond an open end the surface goes on straight.
+/// Segments a curve may have.
+const MOST_SEGMENTS: usize = 2048;
+/// Part of u next to a point where the surface is a cone through the ring at its edge, for derivatives by the curve
+/// parameter have no limit there. A sphere differs from it by 1e-10 of its radius.
+const TIP: f64 = 1e-5;
+
+/// A tube made of sections along a curve.
+///
+/// Where it shrinks to a point at a closed end that point is its pole; a closed end with a size is shut by a flat
+/// cap, so u in [0, 1] covers cap, tube and cap in proportion to their lengths. The parameter of a single
+/// segment with open ends is the curve parameter; with several segments or closed ends u follows the
+/// length of the meridian, so that |S_u| is even, whatever the speeds of the segments are. Beyond an open end
+/// the surface goes on straight, beyond a pole on the other side.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     chain: Chain,
     frames: Frames,
     stack: Stack,
+    meridian: Meridian,
+    start: Tip,
+    end: Tip,
+}
+
+/// How the surface goes on at an end.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tip {
+    closed: bool,
+    /// Part of u that the cap takes.
+    width: f64,
+    /// The pole.
+    center: DVec3,
+    /// Greatest rate at which a straight continuation narrows.
+    shrink: f64,
 }
 
 impl Sweep {
-    /// The tube that `spec` describes.
+    /// The tube that `spec` describes. Takes about a millisecond.
     pub fn new(spec: &TubeSpec) -> Result<Self, Fault> {
         let finite = |p: DVec3| p.is_finite() && p.abs().max_element() <= 1e7;
         if spec.curve.iter().any(|segment| !segment.points().iter().copied().all(finite)) {
@@ -26,60 +54,173 @@ impl Sweep {
         if spec.curve.is_empty() || spec.sections.is_empty() {
             return Err(Fault::Empty);
         }
+        if spec.curve.len() > MOST_SEGMENTS {
+            return Err(Fault::TooMany { limit: MOST_SEGMENTS });
+        }
         let chain = Chain::new(&spec.curve).map_err(|segment| Fault::ZeroLength { segment })?;
         let stack = Stack::new(spec)?;
         let frames = Frames::new(&chain).map_err(|jump| Fault::Kink { u: jump.u, degrees: jump.degrees })?;
-        Ok(Self { chain, frames, stack })
+        let breaks = breaks(&chain, &stack);
+        fold::check(&chain, &frames, &stack, &breaks)?;
+        let points = stack.points_at_ends();
+        let plain = Meridian::new(&[0.0, 1.0], true, [0.0; 2], |_| 1.0);
+        let mut sweep =
+            Self { chain, frames, stack, meridian: plain, start: Tip::default(), end: Tip::default() };
+        let ends = [(spec.start, points.0, 0.0), (spec.end, points.1, 1.0)];
+        let disks = ends.map(|(end, point, w)| sweep.disk(w, end == End::Closed && !point));
+        let meridian = {
+            let pace = |w: f64| {
+                let speed = sweep.chain.at(w).speed;
+                (speed * speed + sweep.stack.pace_squared(w)).sqrt()
+            };
+            Meridian::new(&breaks, spec.curve.len() == 1, disks.map(|disk| disk.1), pace)
+        };
+        let body = meridian.body();
+        sweep.meridian = meridian;
+        let tip = |(end, point, _): (End, bool, f64), (center, _): (DVec3, f64), cap: f64| Tip {
+            closed: end == End::Closed,
+            width: if point { TIP } else { cap },
+            center,
+            shrink: 0.0,
+        };
+        sweep.start = tip(ends[0], disks[0], body.start);
+        sweep.end = tip(ends[1], disks[1], 1.0 - body.end);
+        sweep.start.shrink = sweep.shrink(0.0, -1.0);
+        sweep.end.shrink = sweep.shrink(1.0, 1.0);
+        Ok(sweep)
     }
 
-    /// The part of [0, 1] that the curve takes; caps at closed ends have the rest.
+    /// The part of [0, 1] that the curve takes; flat caps at closed ends have the rest.
     pub fn tube_range(&self) -> Range<f64> {
-        0.0..1.0
+        self.meridian.body()
     }
 
-    /// The curve parameter at surface parameter `u`.
+    /// The curve parameter at surface parameter `u`: that of the nearest end on a cap.
     pub fn curve_parameter(&self, u: f64) -> f64 {
-        u.clamp(0.0, 1.0)
+        let body = self.meridian.body();
+        self.meridian.eval(u.clamp(body.start, body.end)).0
     }
 
-    /// The surface parameter at curve parameter `w`.
+    /// The surface parameter at curve parameter `w` in [0, 1].
     pub fn surface_parameter(&self, w: f64) -> f64 {
-        w.clamp(0.0, 1.0)
+        self.meridian.invert(w)
+    }
+
+    /// Center and mean radius of the section at curve parameter `w`; the radius is 0 unless `wanted`.
+    fn disk(&self, w: f64, wanted: bool) -> (DVec3, f64) {
+        const SAMPLES: u32 = 64;
+        let ring = (0..SAMPLES).map(|k| self.body(w, f64::from(k) / f64::from(SAMPLES)).point);
+        let center = ring.clone().sum::<DVec3>() / f64::from(SAMPLES);
+        let radius = ring.map(|p| p.distance(center)).sum::<f64>() / f64::from(SAMPLES);
+        (center, if wanted { radius } else { 0.0 })
+    }
+
+    /// Greatest rate (a unit of u) at which the ring at an open end comes closer to its center when u goes on.
+    fn shrink(&self, u: f64, sign: f64) -> f64 {
+        let ring = |k: u32| self.tube(u, f64::from(k) / 16.0);
+        let mean =
+            (0..16).map(ring).fold((DVec3::ZERO, DVec3::ZERO), |(p, d), jet| (p + jet.point, d + jet.du));
+        let (center, drift) = (mean.0 / 16.0, mean.1 / 16.0);
+        (0..16)
+            .map(|k| {
+                let jet = ring(k);
+                let arm = jet.point - center;
+                -sign * (jet.du - drift).dot(arm) / arm.length_squared().max(1e-12)
+            })
+            .fold(0.0, f64::max)
     }
 
     /// Point and derivatives, `du` by the curve parameter.
     #[inline]
     fn body(&self, w: f64, v: f64) -> Jet {
         let (segment, t) = self.chain.locate(w);
-        let place: Place = self.chain.place(segment, t);
+        let place = self.chain.place(segment, t);
         let axis = self.frames.axis(segment, t, &place);
-        let other = place.tangent.cross(axis);
-        let profile = self.stack.eval(w, v);
-        let (p, pu, pv) = (profile.point, profile.du, profile.dv);
-        let bend = p.x * place.turn.dot(axis) + p.y * place.turn.dot(other);
-        let globe = |q: DVec3| axis * q.x + other * q.y + place.tangent * q.z;
+        carry(&place, axis, &self.stack.eval(w, v))
+    }
+
+    /// The surface on the curve's part of u.
+    #[inline]
+    fn tube(&self, u: f64, v: f64) -> Jet {
+        let (w, rate) = self.meridian.eval(u);
+        let jet = self.body(w, v);
+        Jet { point: jet.point, du: jet.du * rate, dv: jet.dv }
+    }
+
+    /// The surface outside of the curve's part of u: caps, poles and what lies beyond the ends.
+    #[cold]
+    fn beyond(&self, u: f64, v: f64) -> Jet {
+        let at_start = u < 0.5;
+        let (tip, edge, sign) = if at_start { (&self.start, 0.0, 1.0) } else { (&self.end, 1.0, -1.0) };
+        if tip.closed {
+            // The distance from the pole; on its other side the opposite half turn.
+            let depth = sign * (u - edge);
+            let (depth, v, flip) = if depth < 0.0 { (-depth, v + 0.5, -1.0) } else { (depth, v, 1.0) };
+            let depth = depth.min(0.5);
+            if depth >= tip.width {
+                let jet = self.tube(edge + sign * depth, v);
+                return Jet { du: jet.du * flip, ..jet };
+            }
+            let rim = self.tube(edge + sign * tip.width, v);
+            let arm = rim.point - tip.center;
+            let share = depth / tip.width;
+            return Jet {
+                point: tip.center + arm * share,
+                du: arm * (flip * sign / tip.width),
+                dv: rim.dv * share,
+            };
+        }
+        const STEP: f64 = 1e-5;
+        let jet = self.tube(edge, v);
+        let twist = (self.tube(edge, v + STEP).du - self.tube(edge, v - STEP).du) / (2.0 * STEP);
+        // A narrowing end never closes: the step bends toward the distance at which it would.
+        let step = u - edge;
+        let factor = 1.0 / (1.0 + tip.shrink * step.abs());
         Jet {
-            point: place.point + globe(p),
-            du: globe(pu) + place.tangent * (place.speed - bend) + place.turn * p.z,
-            dv: globe(pv),
+            point: jet.point + jet.du * (step * factor),
+            du: jet.du * (factor * factor),
+            dv: jet.dv + twist * (step * factor),
         }
     }
 }
 
+/// A profile carried into space. The frame turns about the tangent nowhere, so its vectors change along the tangent only.
+#[inline]
+pub(super) fn carry(place: &Place, axis: DVec3, profile: &Jet) -> Jet {
+    let other = place.tangent.cross(axis);
+    let globe = |q: DVec3| axis * q.x + other * q.y + place.tangent * q.z;
+    let p = profile.point;
+    let bend = p.x * place.turn.dot(axis) + p.y * place.turn.dot(other);
+    Jet {
+        point: place.point + globe(p),
+        du: globe(profile.du) + place.tangent * (place.speed - bend) + place.turn * p.z,
+        dv: globe(profile.dv),
+    }
+}
+
+/// Parameters of all joints and sections, ascending, from 0 to 1.
+fn breaks(chain: &Chain, stack: &Stack) -> Vec<f64> {
+    let segments = chain.segments();
+    let mut breaks: Vec<f64> = (0..=segments).map(|k| k as f64 / segments as f64).collect();
+    breaks.extend_from_slice(stack.breaks());
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup_by(|b, a| *b - *a < 1e-9);
+    if let Some(last) = breaks.last_mut() {
+        *last = 1.0;
+    }
+    breaks
+}
+
 impl ParametricSurface for Sweep {
+    #[inline]
     fn point(&self, u: f64, v: f64) -> DVec3 {
         self.jet(u, v).point
     }
 
+    #[inline]
     fn jet(&self, u: f64, v: f64) -> Jet {
-        if (0.0..=1.0).contains(&u) {
-            return self.body(u, v);
-        }
-        let edge = u.clamp(0.0, 1.0);
-        let beyond = u - edge;
-        let jet = self.body(edge, v);
-        const STEP: f64 = 1e-5;
-        let twist = (self.body(edge, v + STEP).du - self.body(edge, v - STEP).du) / (2.0 * STEP);
-        Jet { point: jet.point + beyond * jet.du, du: jet.du, dv: jet.dv + beyond * twist }
+        let low = if self.start.closed { self.start.width } else { 0.0 };
+        let high = if self.end.closed { 1.0 - self.end.width } else { 1.0 };
+        if u >= low && u <= high { self.tube(u, v) } else { self.beyond(u, v) }
     }
 }

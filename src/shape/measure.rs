@@ -1,0 +1,59 @@
+//! Lengths and areas of surfaces by quadrature.
+
+use super::ParametricSurface;
+use super::bezier::integrate;
+use std::ops::Range;
+
+/// Length of the closed line at `u`, in mm, from `samples` derivatives: exact to rounding for smooth lines and few samples.
+pub fn girth<S: ParametricSurface + ?Sized>(surface: &S, u: f64, samples: u32) -> f64 {
+    let samples = samples.max(1);
+    let speed = |k: u32| surface.jet(u, f64::from(k) / f64::from(samples)).dv.length();
+    (0..samples).map(speed).sum::<f64>() / f64::from(samples)
+}
+
+/// Length of the line at `v` over a range of u, in mm, by 5-point quadrature on `steps` equal parts.
+pub fn length_along<S: ParametricSurface + ?Sized>(
+    surface: &S,
+    v: f64,
+    range: Range<f64>,
+    steps: u32,
+) -> f64 {
+    let steps = steps.max(1);
+    let at = |k: u32| range.start + (range.end - range.start) * f64::from(k) / f64::from(steps);
+    (0..steps).map(|k| integrate(at(k), at(k + 1), |u| surface.jet(u, v).du.length())).sum()
+}
+
+/// Area over u in [0, 1], in mm^2, by 5-point quadrature on `steps` parts of u and `samples` of v.
+pub fn area<S: ParametricSurface + ?Sized>(surface: &S, steps: u32, samples: u32) -> f64 {
+    let (steps, samples) = (steps.max(1), samples.max(1));
+    let ring = |u: f64| {
+        let element = |k: u32| {
+            let jet = surface.jet(u, f64::from(k) / f64::from(samples));
+            jet.du.cross(jet.dv).length()
+        };
+        (0..samples).map(element).sum::<f64>() / f64::from(samples)
+    };
+    let at = |k: u32| f64::from(k) / f64::from(steps);
+    (0..steps).map(|k| integrate(at(k), at(k + 1), ring)).sum()
+}
+
+/// Whether the surface looks the same all around: the metric does not depend on v (to 1e-7 of itself, at 16 x 16
+/// places) and the lines of u and v cross at right angles.
+pub fn is_revolution<S: ParametricSurface + ?Sized>(surface: &S) -> bool {
+    const SAMPLES: u32 = 16;
+    const TOLERANCE: f64 = 1e-7;
+    (0..SAMPLES).all(|i| {
+        let u = (f64::from(i) + 0.5) / f64::from(SAMPLES);
+        let metric = |k: u32| {
+            let jet = surface.jet(u, f64::from(k) / f64::from(SAMPLES));
+            (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared())
+        };
+        let (e0, _, g0) = metric(0);
+        (0..SAMPLES).all(|k| {
+            let (e, f, g) = metric(k);
+            (e - e0).abs() <= TOLERANCE * e0
+                && (g - g0).abs() <= TOLERANCE * g0
+                && f.abs() <= TOLERANCE * (e * g).sqrt()
+        })
+    })
+}

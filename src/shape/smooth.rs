@@ -1,0 +1,109 @@
+//! Smooth interpolation of numbers at given places, without overshoot.
+
+/// A cubic in t = (x - `start`) `inverse`, lowest power first.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cubic {
+    pub(super) start: f64,
+    pub(super) inverse: f64,
+    pub(super) coefficients: [f64; 4],
+}
+
+/// Cubics over [0, 1] through the values at the places (ascending, at least one), constant before the first and
+/// after the last: straight, or smooth. A `positive` quantity is kept well above zero between positive values.
+pub(super) fn cubics(places: &[f64], values: &[f64], smooth: bool, positive: bool) -> Vec<Cubic> {
+    let mut slopes = if smooth { slopes(places, values, positive) } else { vec![0.0; places.len()] };
+    let (Some(&first), Some(&last)) = (places.first(), places.last()) else { return Vec::new() };
+    let (low, high) = (values[0], values[values.len() - 1]);
+    if first > 0.0 {
+        slopes[0] = 0.0;
+    }
+    if last < 1.0 {
+        slopes[values.len() - 1] = 0.0;
+    }
+    let flat = |start: f64, end: f64, value: f64| Cubic {
+        start,
+        inverse: 1.0 / (end - start),
+        coefficients: [value, 0.0, 0.0, 0.0],
+    };
+    let mut result = Vec::with_capacity(places.len() + 1);
+    if first > 0.0 {
+        result.push(flat(0.0, first, low));
+    }
+    for i in 1..places.len() {
+        let width = places[i] - places[i - 1];
+        let (from, rise) = (values[i - 1], values[i] - values[i - 1]);
+        let coefficients = if smooth {
+            hermite(from, rise, slopes[i - 1] * width, slopes[i] * width)
+        } else {
+            [from, rise, 0.0, 0.0]
+        };
+        result.push(Cubic { start: places[i - 1], inverse: 1.0 / width, coefficients });
+    }
+    if last < 1.0 {
+        result.push(flat(last, 1.0, high));
+    }
+    if result.is_empty() {
+        result.push(flat(0.0, 1.0, low));
+    }
+    result
+}
+
+fn hermite(from: f64, rise: f64, start: f64, end: f64) -> [f64; 4] {
+    [from, start, 3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise]
+}
+
+/// Slopes at the places by the limiter M3-A of Huynh (1993): third order even at a smooth extremum, so that a
+/// parabola is kept exactly, and monotone where the values are.
+pub(super) fn slopes(places: &[f64], values: &[f64], positive: bool) -> Vec<f64> {
+    let count = places.len().min(values.len());
+    if count < 2 {
+        return vec![0.0; count];
+    }
+    let secant = |i: usize| (values[i + 1] - values[i]) / (places[i + 1] - places[i]);
+    if count == 2 {
+        return vec![secant(0); 2];
+    }
+    // Second divided difference around place i; beyond the ends the nearest one.
+    let second = |i: usize| {
+        let i = i.clamp(1, count - 2);
+        (secant(i) - secant(i - 1)) / (places[i + 1] - places[i - 1])
+    };
+    let between = |i: usize| minmod(second(i), second(i + 1));
+    let mut slopes = vec![0.0; count];
+    for i in 1..count - 1 {
+        let left = secant(i - 1) + between(i - 1) * (places[i] - places[i - 1]);
+        let right = secant(i) + between(i) * (places[i] - places[i + 1]);
+        let limit = 3.0 * minmod(secant(i - 1), secant(i)).abs();
+        let wide = minmod(left, right);
+        let size = (0.5 * (left + right)).abs().min(limit.max(1.5 * wide.abs()));
+        slopes[i] = if wide == 0.0 { 0.0 } else { size.copysign(wide) };
+    }
+    let end = |secant: f64, slope: f64| minmod(slope, 3.0 * secant);
+    slopes[0] = end(secant(0), secant(0) - second(1) * (places[1] - places[0]));
+    let last = secant(count - 2);
+    slopes[count - 1] = end(last, last + second(count - 2) * (places[count - 1] - places[count - 2]));
+    if positive {
+        for i in 0..count - 1 {
+            let (width, floor) = (places[i + 1] - places[i], 0.5 * values[i].min(values[i + 1]));
+            let [a, b, c, d] =
+                hermite(values[i], values[i + 1] - values[i], slopes[i] * width, slopes[i + 1] * width);
+            let low = (1..32).map(|k| f64::from(k) / 32.0).any(|t| a + t * (b + t * (c + t * d)) < floor);
+            if low {
+                slopes[i] = minmod(slopes[i], 3.0 * secant(i));
+                slopes[i + 1] = minmod(slopes[i + 1], 3.0 * secant(i));
+            }
+        }
+    }
+    slopes
+}
+
+/// The smaller of two numbers of one sign, otherwise 0.
+fn minmod(a: f64, b: f64) -> f64 {
+    if a * b <= 0.0 {
+        0.0
+    } else if a.abs() < b.abs() {
+        a
+    } else {
+        b
+    }
+}
