@@ -44,7 +44,7 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    fn form(&self, u: f64, v: f64) -> Jet {
+    fn form(self, u: f64, v: f64) -> Jet {
         revolved(v, [self.radius, 0.0, 0.0], [self.length * u, self.length])
     }
     /// Area of the side in mm^2.
@@ -69,7 +69,7 @@ pub struct Cone {
 }
 
 impl Cone {
-    fn form(&self, u: f64, v: f64) -> Jet {
+    fn form(self, u: f64, v: f64) -> Jet {
         let growth = self.end - self.start;
         revolved(v, [self.start + growth * u, growth, 0.0], [self.length * u, self.length])
     }
@@ -91,7 +91,7 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    fn form(&self, u: f64, v: f64) -> Jet {
+    fn form(self, u: f64, v: f64) -> Jet {
         SphereZone { radius: self.radius, from: 0.0, to: PI }.form(u, v)
     }
     /// Area in mm^2.
@@ -116,7 +116,7 @@ pub struct SphereZone {
 }
 
 impl SphereZone {
-    fn form(&self, u: f64, v: f64) -> Jet {
+    fn form(self, u: f64, v: f64) -> Jet {
         let rate = self.to - self.from;
         let (sin, cos) = sin_cos(self.from + rate * u);
         let (high, wide) = (self.radius * sin, self.radius * cos);
@@ -140,7 +140,7 @@ pub struct Ellipsoid {
 }
 
 impl Ellipsoid {
-    fn form(&self, u: f64, v: f64) -> Jet {
+    fn form(self, u: f64, v: f64) -> Jet {
         let jet = Sphere { radius: 1.0 }.form(u, v);
         Jet { point: jet.point * self.axes, du: jet.du * self.axes, dv: jet.dv * self.axes }
     }
@@ -175,7 +175,7 @@ pub struct TorusArc {
 }
 
 impl TorusArc {
-    fn form(&self, u: f64, v: f64) -> Jet {
+    fn form(self, u: f64, v: f64) -> Jet {
         let (arm, turn) = around(v);
         let (sin, cos) = sin_cos(self.angle * u);
         let (across, along) = (DVec3::new(cos, 0.0, -sin), DVec3::new(sin, 0.0, cos));
@@ -206,7 +206,7 @@ pub struct Fluted {
 }
 
 impl Fluted {
-    fn form(&self, u: f64, v: f64) -> Jet {
+    fn form(self, u: f64, v: f64) -> Jet {
         let phase = TAU * v + 4.0 * u;
         let (flute, envelope) = (sin_cos(phase), sin_cos(5.0 * u));
         let size = 1.6 * self.scale;
@@ -227,7 +227,7 @@ pub struct Bulge {
 }
 
 impl Bulge {
-    fn form(&self, u: f64, v: f64) -> Jet {
+    fn form(self, u: f64, v: f64) -> Jet {
         let (rise, rate) = (sin(PI * u), PI * sin(TAU * u));
         let (sin, cos) = sin_cos(TAU * v);
         let side = 0.5 + 0.5 * cos;

@@ -20,7 +20,7 @@ const TIP: f64 = 1e-5;
 /// Where it shrinks to a point at a closed end that point is its pole; a closed end with a size is shut by a flat
 /// cap, so u in [0, 1] covers cap, tube and cap in proportion to their lengths. The parameter of a single
 /// segment with open ends is the curve parameter; with several segments or closed ends u follows the
-/// length of the meridian, so that |S_u| is even, whatever the speeds of the segments are. Beyond an open end
+/// length of the meridian, so that its speed is even, whatever the speeds of the segments are. Beyond an open end
 /// the surface goes on straight, beyond a pole on the other side.
 #[derive(Clone, Debug)]
 pub struct Sweep {
