@@ -119,4 +119,24 @@ codes! {
     ///
     /// The caps keep memory and time in bounds for any input.
     TooLarge = "E0902", "too large";
+    /// An option of the generator is out of its range.
+    ///
+    /// Wrong: `--set max-short-row=2`. Right: `--set max-short-row=0.5`.
+    /// `picot build --help` names the options; the message names the range.
+    OptionOutOfRange = "E1301", "an option is out of range";
+    /// The tube is too short for its stitch: not even one round can be worked.
+    ///
+    /// A tube needs at least two rows from end to end, a closed end half a row more.
+    ///
+    /// Wrong: a tube 3 mm long with stitches 5 mm high.
+    /// Right: a smaller stitch, or a longer tube.
+    TooFewRows = "E1302", "too few rows";
+    /// The surface cannot be covered: it folds over itself, jumps, or has no finite size.
+    ///
+    /// Rows are laid at equal distance along the surface. Where it bends more sharply than its own radius allows, or where
+    /// neighboring sections differ by far more than a row can follow, stitches run away.
+    ///
+    /// Wrong: a tube of radius 3 around a bend of radius 1.
+    /// Right: a wider bend, or a thinner tube.
+    SurfaceBroken = "E1303", "the surface cannot be covered";
 }

@@ -1,15 +1,186 @@
 //! From a surface to a stitch graph: rows, first row, shaping, short rows and relaxation.
+//!
+//! The tube is covered by one helix (paper, section 3.2): row `tau` of the helix lies at u = U(tau), and H(tau) = S(U(tau),
+//! frac tau). Nodes are open loops. Surfaces of revolution get clean repeats ([`symmetric`]); all others are woven
+//! row by row ([`weave`]). In the end all nodes settle on the surface ([`relax`]).
 
-use crate::diag::Sink;
-use crate::ir::{Gauge, Graph};
-use crate::shape::Tube;
+mod finish;
+mod first_row;
+mod options;
+mod relax;
+mod rows;
+mod sheet;
+mod short_rows;
+mod staircase;
+mod symmetric;
+mod weave;
 
-/// What the generator may be told.
-#[derive(Clone, Debug, PartialEq, Default, serde::Deserialize)]
-#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Options {}
+pub use options::Options;
+
+use crate::diag::{Code, Diagnostic, Sink};
+use crate::ir::{Gauge, Graph, MAX_LOOPS};
+use crate::shape::{End, ParametricSurface, Tube};
+use glam::DVec3;
+use relax::{Effort, Ends, Mark, Relaxer};
+use rows::Rows;
+use sheet::Sheet;
+use weave::{Outcome, Weaver};
+
+/// Nodes may slide this far over an open end while they settle.
+const OVERHANG: [f64; 2] = [-0.02, 1.06];
+/// At a pole they keep this share of the first row's distance.
+const POLE_DISTANCE: f64 = 0.3;
+
+const GENTLER: &str = "bend the curve less, or make the sections change more gently";
 
 /// The stitch graph of one tube; `None` with the reason in the sink when it cannot be made.
-pub fn generate(_tube: &Tube, _gauge: &Gauge, _options: &Options, _sink: &mut Sink<'_>) -> Option<Graph> {
-    None
+///
+/// Equal input gives the same graph, bit for bit.
+pub fn generate(tube: &Tube, gauge: &Gauge, options: &Options, sink: &mut Sink<'_>) -> Option<Graph> {
+    let fail = |sink: &mut Sink<'_>, code, message: String, help: &str| {
+        sink.push(Diagnostic::new(code, message).in_round(&tube.name, None).help(help));
+        None
+    };
+    if let Some((name, right)) = options.fault() {
+        let message = format!("the option `{name}` is out of range");
+        return fail(sink, Code::OptionOutOfRange, message, &format!("give it a value {right}"));
+    }
+    let surface = &*tube.surface;
+    let ends = [tube.start, tube.end];
+    let expected = area(surface) / (gauge.width * gauge.height);
+    if !expected.is_finite() {
+        return fail(
+            sink,
+            Code::SurfaceBroken,
+            "the surface has no finite area".into(),
+            "look for control points or sections that are far too large, or no numbers",
+        );
+    }
+    if expected > f64::from(MAX_LOOPS) {
+        let message =
+            format!("this takes about {expected:.0} stitches, more than the {MAX_LOOPS} that Picot handles");
+        return fail(sink, Code::TooLarge, message, "use a larger stitch, or check the unit of the file");
+    }
+    sink.stage("rows");
+    let Some(rows) = Rows::new(surface, ends, gauge.height) else {
+        let message = format!("a stitch of {:.2} mm height is too high for this tube", gauge.height);
+        return fail(sink, Code::TooFewRows, message, "use a smaller stitch or a longer shape");
+    };
+    sink.stage("stitches");
+    let ground = Ground::new(surface, ends, &rows, gauge, options);
+    let most = (3.0 * expected) as usize + 10_000;
+    let Some((sheet, start)) = ground.lay_evenly(sink).or_else(|| ground.weave(most, sink)) else {
+        let message =
+            "the rows run away: this surface folds over itself, or changes faster than stitches follow";
+        return fail(sink, Code::SurfaceBroken, message.into(), GENTLER);
+    };
+    if sheet.main.is_empty() {
+        let message =
+            format!("a stitch of {:.2} mm height leaves no round to work on this tube", gauge.height);
+        return fail(sink, Code::TooFewRows, message, "use a smaller stitch or a longer shape");
+    }
+    if sheet.point.iter().any(|p| !p.is_finite()) {
+        return fail(sink, Code::SurfaceBroken, "stitches ran off this surface".into(), GENTLER);
+    }
+    Some(finish::graph(&sheet, &rows, start, ground.poles))
+}
+
+/// What all ways of laying stitches share.
+struct Ground<'s> {
+    surface: &'s dyn ParametricSurface,
+    rows: &'s Rows,
+    gauge: &'s Gauge,
+    options: &'s Options,
+    /// The points at the closed ends.
+    poles: [Option<DVec3>; 2],
+    /// Least and greatest u of a node.
+    range: [f64; 2],
+}
+
+impl<'s> Ground<'s> {
+    fn new(
+        surface: &'s dyn ParametricSurface,
+        ends: [End; 2],
+        rows: &'s Rows,
+        gauge: &'s Gauge,
+        options: &'s Options,
+    ) -> Self {
+        let pole = |end: End, u: f64| (end == End::Closed).then(|| surface.point(u, 0.0));
+        let poles = [pole(ends[0], 0.0), pole(ends[1], 1.0)];
+        let limit = |end: End, open: f64, row: f64, pole: f64| {
+            if end == End::Closed { pole + POLE_DISTANCE * (row - pole) } else { open }
+        };
+        let range = [
+            limit(ends[0], OVERHANG[0], rows.at(0.0), 0.0),
+            limit(ends[1], OVERHANG[1], rows.at(rows.count), 1.0),
+        ];
+        Self { surface, rows, gauge, options, poles, range }
+    }
+
+    /// Even repeats on a surface of revolution, settled; with the stitches of the first row. `None` elsewhere.
+    fn lay_evenly(&self, sink: &Sink<'_>) -> Option<(Sheet, usize)> {
+        let Self { surface, rows, options, .. } = *self;
+        if !options.symmetric || !symmetric::is_revolution(surface) {
+            return None;
+        }
+        let rounds = rows.count as u32;
+        let girths: Vec<f64> =
+            (0..rounds).map(|k| first_row::turn_length(surface, rows, k) / self.gauge.width).collect();
+        let ring = self.poles[0].map(|_| first_row::ring_size(surface, rows, self.gauge));
+        let counts = symmetric::plan_counts(&girths, ring)?;
+        let start = counts[0] as usize;
+        let mut sheet = Sheet::new(self.gauge);
+        first_row::lay(surface, &mut sheet, first_row::centered_places(counts[0]), rows);
+        symmetric::lay_rounds(surface, &mut sheet, rows, &counts, |done| {
+            sink.step(u64::from(done), u64::from(rounds));
+        });
+        let free = if self.poles[0].is_some() { 0 } else { start };
+        let level = sheet.len() - counts[counts.len() - 1] as usize;
+        Relaxer::default().relax(
+            surface,
+            &mut sheet,
+            Mark { nodes: free, ..Mark::default() },
+            Effort { sweeps: options.sweeps, squareness: options.squareness },
+            Ends {
+                range: self.range,
+                ring: self.poles[0].map(|pole| (pole, start)),
+                level: Some((rows, level)),
+            },
+        );
+        Some((sheet, start))
+    }
+
+    /// Row by row, for any surface; with the stitches of the first row. `None` when the rows run away.
+    fn weave(&self, most: usize, sink: &Sink<'_>) -> Option<(Sheet, usize)> {
+        let Self { surface, rows, options, .. } = *self;
+        let mut sheet = Sheet::new(self.gauge);
+        if self.poles[0].is_some() {
+            let ring = first_row::ring_size(surface, rows, self.gauge);
+            first_row::lay(surface, &mut sheet, first_row::centered_places(ring), rows);
+        } else {
+            let places = first_row::even_places(surface, rows, self.gauge.width);
+            first_row::lay(surface, &mut sheet, places.into_iter(), rows);
+        }
+        let start = sheet.len();
+        let mut weaver = Weaver::new(surface, rows, options, sheet, self.poles[0], self.range, most);
+        match weaver.run(|done, total| sink.step(done, total)) {
+            Outcome::Done => Some((weaver.sheet, start)),
+            Outcome::Runaway => None,
+        }
+    }
+}
+
+/// Area by midpoint quadrature, good to a percent on smooth tubes.
+fn area(surface: &dyn ParametricSurface) -> f64 {
+    const ALONG: u32 = 48;
+    const AROUND: u32 = 16;
+    let mut sum = 0.0;
+    for i in 0..ALONG {
+        for k in 0..AROUND {
+            let u = (f64::from(i) + 0.5) / f64::from(ALONG);
+            let jet = surface.jet(u, f64::from(k) / f64::from(AROUND));
+            sum += jet.du.cross(jet.dv).length();
+        }
+    }
+    sum / f64::from(ALONG * AROUND)
 }

@@ -1,0 +1,70 @@
+//! What the generator may be told; each option says what it changes and what it costs.
+
+use serde::Deserialize;
+
+/// Options of the generator. The defaults serve every shape; the names follow the paper where it has one.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Options {
+    /// Short rows on or off. Without them a bent tube keeps one count of rows on both sides and its tiles shear.
+    pub short_rows: bool,
+    /// Least stitches of one pass of a short row (paper, section 3.3: 4). Shorter ones make more turns for little shape.
+    pub min_short_row: u32,
+    /// Longest pass of a short row as a share of its round. Above one half the two ends come near each other.
+    pub max_short_row: f64,
+    /// Missing height, in stitch heights, from which a short row of least length opens (paper: activation threshold).
+    pub activation: f64,
+    /// Missing height over which two close short rows are merged into one (paper: tolerance threshold).
+    pub tolerance: f64,
+    /// Rows that are settled again after each new row (paper: the moving window).
+    pub window: u32,
+    /// Sweeps over the window after each row.
+    pub window_sweeps: u32,
+    /// Sweeps over the whole part at the end.
+    pub sweeps: u32,
+    /// Weight of a square tile against exact lengths in the final sweeps: higher trades length error for skew.
+    pub squareness: f64,
+    /// Shaping of rotationally symmetric shapes as a designer writes it: even repeats, staggered from round to round.
+    pub symmetric: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            short_rows: true,
+            min_short_row: 8,
+            max_short_row: 0.6,
+            activation: 1.125,
+            tolerance: 2.0 / 3.0,
+            window: 4,
+            window_sweeps: 6,
+            sweeps: 30,
+            squareness: 0.25,
+            symmetric: true,
+        }
+    }
+}
+
+impl Options {
+    /// The first option out of range: its name and what would be right.
+    pub fn fault(&self) -> Option<(&'static str, &'static str)> {
+        let between = |x: f64, low: f64, high: f64| (low..=high).contains(&x);
+        [
+            (self.min_short_row >= 3, "min-short-row", "at least 3"),
+            (between(self.max_short_row, 0.1, 0.9), "max-short-row", "from 0.1 to 0.9"),
+            (between(self.activation, 0.5, 10.0), "activation", "from 0.5 to 10 stitch heights"),
+            (
+                between(self.tolerance, 0.0, self.activation),
+                "tolerance",
+                "from 0 to the activation threshold",
+            ),
+            ((1..=64).contains(&self.window), "window", "from 1 to 64 rows"),
+            (self.window_sweeps <= 1000, "window-sweeps", "at most 1000"),
+            (self.sweeps <= 100_000, "sweeps", "at most 100000"),
+            (between(self.squareness, 0.0, 100.0), "squareness", "from 0 to 100"),
+        ]
+        .into_iter()
+        .find(|(fine, ..)| !fine)
+        .map(|(_, name, right)| (name, right))
+    }
+}

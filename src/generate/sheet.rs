@@ -1,0 +1,233 @@
+//! The growing sheet of stitches: nodes with their place on the surface, edges and tiles to relax, and the work log.
+
+use crate::ir::{Gauge, NodeId, Stitch};
+use crate::shape::{Jet, ParametricSurface};
+use glam::DVec3;
+
+/// What an edge asks for in the relaxation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum EdgeKind {
+    /// Along the yarn; rest length one stitch width.
+    Course,
+    /// Up a stitch; rest length one stitch height.
+    Wale,
+    /// Up or down the step at a short row's end: a soft pull that closes it.
+    Step,
+}
+
+/// Two nodes that pull at each other.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Edge {
+    pub a: NodeId,
+    pub b: NodeId,
+    pub kind: EdgeKind,
+}
+
+/// How four nodes of two successive wales span a tile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum TileKind {
+    /// Two wales side by side; an increase or a decrease has two equal corners.
+    Wales,
+    /// The same across the step at a short row's end.
+    Step,
+    /// The turn at the left end of a back pass: only the first wale stands for the height.
+    TurnLeft,
+    /// The turn at the right end: only the second wale does.
+    TurnRight,
+}
+
+/// Base left, base right, top left, top right.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Quad {
+    pub corners: [NodeId; 4],
+    pub kind: TileKind,
+}
+
+/// One stitch in the log: bases and tops in the order of a forward row; unused places repeat the first.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Work {
+    pub stitch: Stitch,
+    pub base: [NodeId; 2],
+    pub top: [NodeId; 2],
+}
+
+/// A short row: after the forward stitch that made `after`, a back pass and a forward pass over it.
+#[derive(Clone, Debug)]
+pub(crate) struct ShortRow {
+    pub after: NodeId,
+    /// The back pass, stitches from left to right, so in reverse of working order.
+    pub back: Vec<Work>,
+    /// The forward pass in working order.
+    pub forward: Vec<Work>,
+}
+
+/// Marks the top of an increase or of a decrease, so that the next row does not undo it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Shaped {
+    #[default]
+    No,
+    Inc,
+    Dec,
+}
+
+/// Everything that grows while rows are added. Node arrays run in parallel.
+#[derive(Debug)]
+pub(crate) struct Sheet {
+    pub width: f64,
+    pub height: f64,
+    /// Surface parameter along the tube.
+    pub u: Vec<f64>,
+    /// Turns around the tube, not wrapped.
+    pub v: Vec<f64>,
+    pub point: Vec<DVec3>,
+    /// Derivatives of the surface at the node, as of the last full look.
+    pub du: Vec<DVec3>,
+    pub dv: Vec<DVec3>,
+    pub shaped: Vec<Shaped>,
+    /// True when the yarn steps down behind this node, at the end of a short row.
+    pub steps: Vec<bool>,
+    /// The edge that brings the yarn to this node, where there is one.
+    pub arrival: Vec<u32>,
+    pub edges: Vec<Edge>,
+    pub quads: Vec<Quad>,
+    /// The forward stitches of the helix in order.
+    pub main: Vec<Work>,
+    /// The short rows in working order.
+    pub short_rows: Vec<ShortRow>,
+}
+
+/// A place for a node that is not yet one, with the surface's derivatives nearby.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Foot {
+    pub u: f64,
+    pub v: f64,
+    pub point: DVec3,
+    pub du: DVec3,
+    pub dv: DVec3,
+    /// Unit vector along the course.
+    pub along: DVec3,
+}
+
+/// The coordinates (du, dv) of a small displacement in the tangent plane.
+#[inline]
+pub(crate) fn pull_back(du: DVec3, dv: DVec3, d: DVec3) -> (f64, f64) {
+    let (e, f, g) = (du.dot(du), du.dot(dv), dv.dot(dv));
+    let (x, y) = (d.dot(du), d.dot(dv));
+    let det = (e * g - f * f).max(1e-12 * e * g).max(1e-30);
+    ((g * x - f * y) / det, (e * y - f * x) / det)
+}
+
+impl Foot {
+    /// Moves a little along the course, to first order.
+    pub(crate) fn shifted(&self, distance: f64) -> Self {
+        let d = self.along * distance;
+        let (x, y) = pull_back(self.du, self.dv, d);
+        Self { u: self.u + x, v: self.v + y, point: self.point + d, ..*self }
+    }
+}
+
+impl Sheet {
+    pub(crate) fn new(gauge: &Gauge) -> Self {
+        Self {
+            width: gauge.width,
+            height: gauge.height,
+            u: Vec::new(),
+            v: Vec::new(),
+            point: Vec::new(),
+            du: Vec::new(),
+            dv: Vec::new(),
+            shaped: Vec::new(),
+            steps: Vec::new(),
+            arrival: Vec::new(),
+            edges: Vec::new(),
+            quads: Vec::new(),
+            main: Vec::new(),
+            short_rows: Vec::new(),
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.u.len()
+    }
+
+    /// Adds a node.
+    pub(crate) fn add(&mut self, foot: &Foot, shaped: Shaped) -> NodeId {
+        let id = self.len() as NodeId;
+        self.u.push(foot.u);
+        self.v.push(foot.v);
+        self.point.push(foot.point);
+        self.du.push(foot.du);
+        self.dv.push(foot.dv);
+        self.shaped.push(shaped);
+        self.steps.push(false);
+        self.arrival.push(u32::MAX);
+        id
+    }
+
+    /// Adds the yarn's edge from one node to the next.
+    pub(crate) fn course(&mut self, a: NodeId, b: NodeId) {
+        self.arrival[b as usize] = self.edges.len() as u32;
+        self.edges.push(Edge { a, b, kind: EdgeKind::Course });
+    }
+
+    /// Adds a wale, and the tile that it spans with the wale before it.
+    pub(crate) fn wale(&mut self, before: Option<(NodeId, NodeId)>, base: NodeId, top: NodeId) {
+        if let Some((b, t)) = before {
+            let kind = if b != base && t != top && self.steps[b as usize] {
+                TileKind::Step
+            } else {
+                TileKind::Wales
+            };
+            self.quads.push(Quad { corners: [b, base, t, top], kind });
+        }
+        self.edges.push(Edge { a: base, b: top, kind: EdgeKind::Wale });
+    }
+
+    /// Position and derivatives of a node as they were last seen.
+    #[inline]
+    pub(crate) fn jet(&self, id: NodeId) -> Jet {
+        let i = id as usize;
+        Jet { point: self.point[i], du: self.du[i], dv: self.dv[i] }
+    }
+
+    /// From a node, `distance` in the direction `direction` along the surface: a midpoint step, then one correction so
+    /// that the chord has the length (the last bit of it to first order; the relaxation settles the rest).
+    pub(crate) fn walk(
+        &self,
+        surface: &dyn ParametricSurface,
+        from: NodeId,
+        direction: DVec3,
+        distance: f64,
+        along: DVec3,
+    ) -> Foot {
+        let i = from as usize;
+        let (x, y) = pull_back(self.du[i], self.dv[i], direction * distance);
+        let middle = surface.jet(self.u[i] + 0.5 * x, self.v[i] + 0.5 * y);
+        let normal = middle.du.cross(middle.dv).normalize_or_zero();
+        let heading = (direction - normal * direction.dot(normal)).normalize_or(direction);
+        let (x, y) = pull_back(middle.du, middle.dv, heading * distance);
+        let reached = surface.jet(self.u[i] + x, self.v[i] + y);
+        let chord = reached.point.distance(self.point[i]);
+        let stretch = if chord > 1e-9 { (distance / chord).clamp(0.5, 2.0) } else { 1.0 };
+        Foot {
+            u: self.u[i] + x * stretch,
+            v: self.v[i] + y * stretch,
+            point: self.point[i] + (reached.point - self.point[i]) * stretch,
+            du: reached.du,
+            dv: reached.dv,
+            along,
+        }
+    }
+
+    /// Tangent along the course and direction up the fabric at a node between two neighbors. At a node where neighbors
+    /// coincide the surface's own directions stand in.
+    pub(crate) fn directions(&self, at: NodeId, left: NodeId, right: NodeId) -> (DVec3, DVec3) {
+        let jet = self.jet(at);
+        let normal = jet.du.cross(jet.dv).normalize_or_zero();
+        let chord = self.point[right as usize] - self.point[left as usize];
+        let fallback = jet.dv.normalize_or_zero();
+        let along = (chord - normal * chord.dot(normal)).normalize_or(fallback);
+        let up = normal.cross(along);
+        (along, if up.dot(jet.du) < 0.0 { -up } else { up })
+    }
+}

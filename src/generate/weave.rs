@@ -1,0 +1,512 @@
+//! The general generator: one row of the helix after the other, each placed on the surface, shaped, settled and filled up
+//! with short rows before the next.
+//!
+//! The state is the ring: the open loops in working order. A batch works some or all of them once. What was decided in
+//! earlier rows is settled again within the window, so that gaps and missing heights are true when they are decided.
+
+use super::options::Options;
+use super::relax::{Effort, Ends, Mark, Relaxer};
+use super::rows::{Rows, row_speed};
+use super::sheet::{Edge, EdgeKind, Foot, Quad, Shaped, Sheet, ShortRow, TileKind, Work};
+use super::short_rows::{GAP, Planner, Rules};
+use super::staircase::{Shaping, Staircase};
+use crate::ir::{NodeId, Stitch};
+use crate::math;
+use crate::shape::ParametricSurface;
+use glam::DVec3;
+use std::ops::Range;
+
+/// Neighbors on either side that give the course direction at a base.
+const REACH: usize = 3;
+/// How far a stitch stretches or shrinks toward the level of its neighbors, per stitch height of difference, and at most.
+const LEVELING: f64 = 0.7;
+const LEVELING_MOST: f64 = 0.3;
+/// Missing height by which the ring's start must lag behind its most advanced place to move the seam there.
+const SEAM: f64 = 0.4;
+/// Added to missing heights before short rows are planned: it is better to be a little early.
+const EAGER: f64 = 0.15;
+/// Weight of square tiles while rows settle.
+const WINDOW_SQUARENESS: f64 = 0.5;
+/// Price of a short-row end right over one of the row before, its reach in stitches, and how fast it fades per batch.
+const STACKED_END: f64 = 1.5;
+const STACKED_REACH: f64 = 3.0;
+const FADE: f64 = 0.6;
+/// Share of the usual price of short-row ends in the last two rows, so that the top comes out level.
+const LAST_ROWS_PRICE: f64 = 0.4;
+/// Fewest loops of a batch that short rows may lie on.
+const LEAST_RING: usize = 9;
+
+/// How the weaving ended.
+pub(crate) enum Outcome {
+    /// All rows lie.
+    Done,
+    /// More nodes than any sensible count for this surface: it folds, or the gauge makes no sense here.
+    Runaway,
+}
+
+pub(crate) struct Weaver<'s> {
+    surface: &'s dyn ParametricSurface,
+    rows: &'s Rows,
+    options: &'s Options,
+    pub(crate) sheet: Sheet,
+    relaxer: Relaxer,
+    /// Open loops in working order.
+    ring: Vec<NodeId>,
+    /// Where each batch began.
+    marks: Vec<Mark>,
+    /// The bases worked last, newest first.
+    behind: Vec<NodeId>,
+    last_wale: Option<(NodeId, NodeId)>,
+    last_foot: Option<DVec3>,
+    /// Recent short-row ends: place around the tube, weight.
+    ends: Vec<(f64, f64)>,
+    ring_center: Option<(DVec3, usize)>,
+    range: [f64; 2],
+    part_batch: bool,
+    most: usize,
+    // Buffers of one batch.
+    feet: Vec<Foot>,
+    gaps: Vec<f64>,
+    missing: Vec<f64>,
+    below: Vec<Shaped>,
+    staircase: Staircase,
+    planner: Planner,
+}
+
+impl<'s> Weaver<'s> {
+    /// Starts from a sheet that holds the first row.
+    pub(crate) fn new(
+        surface: &'s dyn ParametricSurface,
+        rows: &'s Rows,
+        options: &'s Options,
+        sheet: Sheet,
+        ring_center: Option<DVec3>,
+        range: [f64; 2],
+        most: usize,
+    ) -> Self {
+        let first_row = sheet.len();
+        Self {
+            surface,
+            rows,
+            options,
+            ring: (0..first_row as NodeId).collect(),
+            sheet,
+            relaxer: Relaxer::default(),
+            marks: Vec::new(),
+            behind: Vec::new(),
+            last_wale: None,
+            last_foot: None,
+            ends: Vec::new(),
+            ring_center: ring_center.map(|pole| (pole, first_row)),
+            range,
+            part_batch: false,
+            most,
+            feet: Vec::new(),
+            gaps: Vec::new(),
+            missing: Vec::new(),
+            below: Vec::new(),
+            staircase: Staircase::default(),
+            planner: Planner::default(),
+        }
+    }
+
+    /// Weaves all rows and settles the whole. `progress` hears of rows done.
+    pub(crate) fn run(&mut self, mut progress: impl FnMut(u64, u64)) -> Outcome {
+        let mut first_batch = true;
+        loop {
+            let length = self.batch_length(first_batch);
+            first_batch = false;
+            self.part_batch = length < self.ring.len();
+            self.marks.push(Mark::of(&self.sheet));
+            let rest = self.ring.split_off(length);
+            let bases = std::mem::replace(&mut self.ring, rest);
+            let worked = self.place_feet(&bases);
+            if worked == 0 {
+                self.ring.splice(0..0, bases);
+                break;
+            }
+            let (tops, top_base) = self.work(&bases[..worked]);
+            self.settle_window();
+            if self.options.short_rows && tops.len() >= LEAST_RING {
+                if self.add_short_rows(&tops, &top_base) {
+                    self.settle_window();
+                }
+            } else {
+                self.ring.extend_from_slice(&tops);
+            }
+            if self.sheet.len() > self.most || !self.sheet.point.last().is_some_and(|p| p.is_finite()) {
+                return Outcome::Runaway;
+            }
+            progress(self.marks.len() as u64, self.rows.count as u64);
+            if worked < bases.len() {
+                self.ring.splice(0..0, bases[worked..].iter().copied());
+                break;
+            }
+        }
+        self.settle_all();
+        Outcome::Done
+    }
+
+    /// Missing height at a node against its place on the helix, in stitch heights.
+    fn missing_at(&self, id: NodeId) -> f64 {
+        let i = id as usize;
+        (self.rows.at(self.sheet.v[i]) - self.sheet.u[i]) * row_speed(&self.sheet.jet(id)) / self.sheet.height
+    }
+
+    /// How much of the ring the next batch takes. A short row must not cross the end of a batch, or a cusp grows there that
+    /// never gets one; so the end moves to where the fabric is most advanced.
+    fn batch_length(&self, first: bool) -> usize {
+        let n = self.ring.len();
+        if !self.options.short_rows {
+            return n;
+        }
+        if first {
+            let coldest = self.slowest_side();
+            let start = self.sheet.v[self.ring[0] as usize];
+            let ahead = (coldest - start).rem_euclid(1.0);
+            if (0.12..0.88).contains(&ahead) {
+                let target = start + ahead;
+                let found = self.ring.iter().position(|id| self.sheet.v[*id as usize] >= target);
+                return found.unwrap_or(n).max(1);
+            }
+            return n;
+        }
+        if self.part_batch || n < 6 {
+            return n;
+        }
+        let missing: Vec<f64> = self.ring.iter().map(|id| self.missing_at(*id)).collect();
+        let smooth = |i: usize| (0..5).map(|k| missing[(i + n + k - 2) % n]).sum::<f64>() / 5.0;
+        let mut least = 0;
+        for i in 1..n {
+            if smooth(i) < smooth(least) - 1e-9 {
+                least = i;
+            }
+        }
+        if smooth(0) - smooth(least) > SEAM && least > 2 && least + 2 < n { least } else { n }
+    }
+
+    /// The side of the tube on which rows lie closest.
+    fn slowest_side(&self) -> f64 {
+        let mut best = (f64::MAX, 0.0);
+        for j in 0..48 {
+            let v = f64::from(j) / 48.0;
+            let speed: f64 =
+                (0..16).map(|i| row_speed(&self.surface.jet((f64::from(i) + 0.5) / 16.0, v))).sum();
+            if speed < best.0 - 1e-9 * speed {
+                best = (speed, v);
+            }
+        }
+        best.1
+    }
+
+    /// Feet of the stitches over the bases: an offset of the front, leveled a little. Returns how many bases still lie below
+    /// the last row.
+    fn place_feet(&mut self, bases: &[NodeId]) -> usize {
+        let n = bases.len();
+        let mut missing = std::mem::take(&mut self.missing);
+        missing.clear();
+        missing.extend(bases.iter().map(|id| self.missing_at(*id)));
+        self.missing = missing;
+        self.feet.clear();
+        let mut neighbors = 0.0;
+        for k in 0..n.min(REACH) {
+            neighbors += self.missing[k];
+        }
+        for (i, &base) in bases.iter().enumerate() {
+            // `neighbors` is the sum over i - REACH ..= i + REACH, cut at the ends.
+            if let Some(enters) = self.missing.get(i + REACH) {
+                neighbors += enters;
+            }
+            if i > REACH {
+                neighbors -= self.missing[i - REACH - 1];
+            }
+            if self.sheet.v[base as usize] + 1.0 > self.rows.count {
+                return i;
+            }
+            let left = if i >= REACH {
+                bases[i - REACH]
+            } else {
+                self.behind.get(REACH - i - 1).or(self.behind.last()).copied().unwrap_or(bases[0])
+            };
+            let right = bases.get(i + REACH).or(self.ring.get(i + REACH - n.min(i + REACH)));
+            let right = right.copied().unwrap_or(bases[n - 1]);
+            let (along, up) = self.sheet.directions(base, left, right);
+            let others = i.min(REACH) + (n - 1 - i).min(REACH);
+            let lag = if others > 0 {
+                self.missing[i] - (neighbors - self.missing[i]) / others as f64
+            } else {
+                0.0
+            };
+            let stretch = 1.0 + (LEVELING * lag).clamp(-LEVELING_MOST, LEVELING_MOST);
+            let mut foot = self.sheet.walk(self.surface, base, up, self.sheet.height * stretch, along);
+            foot.v += 1.0;
+            self.feet.push(foot);
+        }
+        n
+    }
+
+    /// Signed distance between two feet along the course, in stitch widths. Unsigned, crossed feet would look like growth.
+    fn gap(&self, before: DVec3, foot: &Foot) -> f64 {
+        let d = foot.point - before;
+        let along = d.dot(foot.along);
+        (if along > 0.0 { d.length() } else { along }) / self.sheet.width
+    }
+
+    /// Works one row over the bases: shaping, tops, edges and tiles. Returns the tops and the base of each.
+    fn work(&mut self, bases: &[NodeId]) -> (Vec<NodeId>, Vec<NodeId>) {
+        let feet = std::mem::take(&mut self.feet);
+        let feet = &feet[..bases.len()];
+        self.gaps.clear();
+        for (i, foot) in feet.iter().enumerate() {
+            let before = if i == 0 { self.last_foot } else { Some(feet[i - 1].point) };
+            let gap = before.map_or(1.0, |before| self.gap(before, foot));
+            self.gaps.push(gap);
+        }
+        self.below.clear();
+        self.below.extend(bases.iter().map(|id| self.sheet.shaped[*id as usize]));
+        self.staircase.solve(&self.gaps, &self.below);
+        let mut tops = Vec::with_capacity(bases.len() + 8);
+        let mut top_base = Vec::with_capacity(bases.len() + 8);
+        let width = self.sheet.width;
+        for (i, (&base, foot)) in bases.iter().zip(feet).enumerate() {
+            let plan = self.staircase.plan[i];
+            if plan == Shaping::Dec
+                && let Some(&top) = tops.last()
+                && let Some(work) = self.sheet.main.last_mut()
+            {
+                work.stitch = Stitch::DEC;
+                work.base[1] = base;
+                self.join_top(top, foot.point);
+                self.sheet.wale(self.last_wale, base, top);
+                self.last_wale = Some((base, top));
+            } else {
+                let inc = plan == Shaping::Inc;
+                let offsets: &[f64] = if inc { &[-0.45, 0.45] } else { &[-0.5 * self.staircase.rest[i]] };
+                let mut made = [0; 2];
+                for (z, offset) in offsets.iter().enumerate() {
+                    let place = foot.shifted(offset * width);
+                    let top = self.sheet.add(&place, if inc { Shaped::Inc } else { Shaped::No });
+                    self.sheet.course(top_of_yarn(self.last_wale, top), top);
+                    self.sheet.wale(self.last_wale, base, top);
+                    self.last_wale = Some((base, top));
+                    made[z] = top;
+                    tops.push(top);
+                    top_base.push(base);
+                }
+                if !inc {
+                    made[1] = made[0];
+                }
+                let stitch = if inc { Stitch::INC } else { Stitch::SC };
+                self.sheet.main.push(Work { stitch, base: [base; 2], top: made });
+            }
+        }
+        self.last_foot = feet.last().map(|foot| foot.point);
+        self.behind.clear();
+        self.behind.extend(bases.iter().rev().take(REACH));
+        (tops, top_base)
+    }
+
+    /// A decrease moves the top of the stitch before to the middle.
+    fn join_top(&mut self, top: NodeId, other: DVec3) {
+        join_top(&mut self.sheet, top, other);
+    }
+
+    fn ends(&self) -> Ends<'static> {
+        Ends { range: self.range, ring: self.ring_center, level: None }
+    }
+
+    /// The first row of an open tube stays where it is.
+    fn free(&self, mut mark: Mark) -> Mark {
+        if self.ring_center.is_none()
+            && let Some(first) = self.marks.first()
+        {
+            mark.nodes = mark.nodes.max(first.nodes);
+        }
+        mark
+    }
+
+    fn settle_window(&mut self) {
+        let oldest = self.marks.len().saturating_sub(self.options.window as usize);
+        let Some(&mark) = self.marks.get(oldest) else { return };
+        let mark = if oldest == 0 { self.free(Mark::default()) } else { self.free(mark) };
+        let effort = Effort { sweeps: self.options.window_sweeps, squareness: WINDOW_SQUARENESS };
+        let ends = self.ends();
+        self.relaxer.relax(self.surface, &mut self.sheet, mark, effort, ends);
+    }
+
+    fn settle_all(&mut self) {
+        let top = self.ring.iter().copied().min().unwrap_or(0) as usize;
+        let mark = self.free(Mark::default());
+        let effort = Effort { sweeps: self.options.sweeps, squareness: self.options.squareness };
+        let ends = Ends { level: Some((self.rows, top)), ..self.ends() };
+        self.relaxer.relax(self.surface, &mut self.sheet, mark, effort, ends);
+    }
+
+    /// Puts the new tops into the ring, with short rows over them where they lag behind. False when there is none.
+    fn add_short_rows(&mut self, tops: &[NodeId], top_base: &[NodeId]) -> bool {
+        let n = tops.len();
+        let size = n + self.ring.len();
+        let around = size as f64;
+        let missing: Vec<f64> = tops.iter().map(|id| self.missing_at(*id) + EAGER).collect();
+        let extra: Vec<f64> = tops.iter().map(|id| self.stacked_price(*id, around)).collect();
+        let cut: Vec<bool> = (0..n).map(|k| k > 0 && top_base[k] != top_base[k - 1]).collect();
+        let least = (self.options.min_short_row as usize).min((0.4 * around) as usize).max(3);
+        let greatest = (self.options.max_short_row * around) as usize;
+        let (activation, tolerance) = (self.options.activation, self.options.tolerance);
+        let mut rules = Rules::from_thresholds(activation, tolerance, least, greatest);
+        if self.marks.len() as f64 > self.rows.count - 2.0 {
+            rules.end_price *= LAST_ROWS_PRICE;
+        }
+        for end in &mut self.ends {
+            end.1 *= FADE;
+        }
+        self.ends.retain(|end| end.1 > 0.1);
+        let mut runs = Vec::new();
+        self.planner.solve(&missing, &extra, &cut, &rules, &mut runs);
+        let mut done = 0;
+        for run in &runs {
+            self.ring.extend_from_slice(&tops[done..run.start]);
+            let raised = self.short_row(tops, run.clone());
+            self.ring.extend_from_slice(&raised);
+            done = run.end;
+        }
+        self.ring.extend_from_slice(&tops[done..]);
+        !runs.is_empty()
+    }
+
+    /// Extra price of a run end at a node: short-row ends right over each other make a visible seam.
+    fn stacked_price(&self, id: NodeId, around: f64) -> f64 {
+        let v = self.sheet.v[id as usize];
+        self.ends
+            .iter()
+            .map(|&(end, weight)| {
+                let turn = (v - end) - (v - end).round();
+                let stitches = turn.abs() * around / STACKED_REACH;
+                if stitches > 4.0 { 0.0 } else { STACKED_END * weight * math::exp(-stitches * stitches) }
+            })
+            .sum()
+    }
+
+    /// Adds one short row over a run of tops: back over it, forward over that. Returns the loops now open there.
+    fn short_row(&mut self, tops: &[NodeId], run: Range<usize>) -> Vec<NodeId> {
+        let (first, last) = (run.start, run.end - 1);
+        self.ends.push((self.sheet.v[tops[first] as usize], 1.0));
+        self.ends.push((self.sheet.v[tops[last] as usize], 1.0));
+        let (back_tops, back) = self.pass(&tops[run], TileKind::TurnRight);
+        let (open, forward) = self.pass(&back_tops, TileKind::TurnLeft);
+        self.sheet.short_rows.push(ShortRow { after: tops[last], back, forward });
+        // The yarn goes down a step behind the run, and the fabric goes up one before it.
+        let (before, end, next) = (tops[first - 1], open[open.len() - 1], tops[last + 1]);
+        self.sheet.steps[before as usize] = true;
+        self.sheet.steps[end as usize] = true;
+        let arrival = self.sheet.arrival[next as usize] as usize;
+        self.sheet.edges[arrival] = Edge { a: end, b: next, kind: EdgeKind::Step };
+        self.sheet.edges.push(Edge { a: before, b: open[0], kind: EdgeKind::Step });
+        open
+    }
+
+    /// One pass of a short row over `bases`, from left to right whatever its direction of work.
+    fn pass(&mut self, bases: &[NodeId], turn: TileKind) -> (Vec<NodeId>, Vec<Work>) {
+        const LEAK: f64 = 0.9;
+        const THRESHOLD: f64 = 0.5;
+        const COOLDOWN: i32 = 4;
+        let n = bases.len();
+        let feet: Vec<Foot> = (0..n)
+            .map(|i| {
+                let (left, right) = (bases[i.saturating_sub(REACH)], bases[(i + REACH).min(n - 1)]);
+                let (along, up) = self.sheet.directions(bases[i], left, right);
+                self.sheet.walk(self.surface, bases[i], up, self.sheet.height, along)
+            })
+            .collect();
+        let mut tops: Vec<NodeId> = Vec::with_capacity(n + 2);
+        let mut works: Vec<Work> = Vec::with_capacity(n);
+        let mut wales: [Option<(NodeId, NodeId)>; 4] = [None; 4]; // first two, last two
+        let mut note = |count: usize, wale| {
+            if count < 2 {
+                wales[count] = Some(wale);
+            }
+            (wales[2], wales[3]) = (wales[3], Some(wale));
+        };
+        let (mut error, mut wait, mut before, mut count) = (0.0, 2, None, 0);
+        for i in 0..n {
+            let mut plan = Shaping::Plain;
+            if i > 0 {
+                error = (error + self.gap(feet[i - 1].point, &feet[i]) - 1.0) * LEAK;
+                if wait <= 0 && i + 2 < n {
+                    let (own, left) =
+                        (self.sheet.shaped[bases[i] as usize], self.sheet.shaped[bases[i - 1] as usize]);
+                    if error > THRESHOLD && own != Shaped::Dec {
+                        plan = Shaping::Inc;
+                        error -= 1.0;
+                        wait = COOLDOWN;
+                    } else if error < -THRESHOLD && own != Shaped::Inc && left != Shaped::Inc {
+                        plan = Shaping::Dec;
+                        error += 1.0;
+                        wait = COOLDOWN;
+                    }
+                }
+                wait -= 1;
+            }
+            if plan == Shaping::Dec
+                && let Some(&top) = tops.last()
+                && let Some(work) = works.last_mut()
+            {
+                work.stitch = Stitch::DEC;
+                work.base[1] = bases[i];
+                join_top(&mut self.sheet, top, feet[i].point);
+                self.sheet.wale(before, bases[i], top);
+                before = Some((bases[i], top));
+                note(count, (bases[i], top));
+                count += 1;
+                continue;
+            }
+            let inc = plan == Shaping::Inc;
+            let offsets: &[f64] = if inc { &[-0.5, 0.5] } else { &[0.0] };
+            let mut made = [0; 2];
+            for (z, offset) in offsets.iter().enumerate() {
+                let place = feet[i].shifted(offset * self.sheet.width);
+                let top = self.sheet.add(&place, if inc { Shaped::Inc } else { Shaped::No });
+                if let Some(&left) = tops.last() {
+                    self.sheet.course(left, top);
+                }
+                self.sheet.wale(before, bases[i], top);
+                before = Some((bases[i], top));
+                note(count, (bases[i], top));
+                count += 1;
+                made[z] = top;
+                tops.push(top);
+            }
+            if !inc {
+                made[1] = made[0];
+            }
+            works.push(Work {
+                stitch: if inc { Stitch::INC } else { Stitch::SC },
+                base: [bases[i]; 2],
+                top: made,
+            });
+        }
+        let pair = if turn == TileKind::TurnRight { [wales[2], wales[3]] } else { [wales[0], wales[1]] };
+        if let [Some(left), Some(right)] = pair {
+            self.sheet.quads.push(Quad { corners: [left.0, right.0, left.1, right.1], kind: turn });
+        }
+        (tops, works)
+    }
+}
+
+/// The last loop that the yarn made: the top of the last wale, or the end of the first row.
+fn top_of_yarn(last_wale: Option<(NodeId, NodeId)>, next: NodeId) -> NodeId {
+    last_wale.map_or(next - 1, |(_, top)| top)
+}
+
+/// A decrease: its top moves to the middle between its own place and the foot of the second base.
+fn join_top(sheet: &mut Sheet, top: NodeId, other: DVec3) {
+    let i = top as usize;
+    let d = 0.5 * (other - sheet.point[i]);
+    let (x, y) = super::sheet::pull_back(sheet.du[i], sheet.dv[i], d);
+    sheet.u[i] += x;
+    sheet.v[i] += y;
+    sheet.point[i] += d;
+    sheet.shaped[i] = Shaped::Dec;
+}
+
+const _: () = assert!(GAP >= 2, "a short row needs a neighbor on either side");
