@@ -8,10 +8,12 @@ use super::sheet::{Foot, Shaped, Sheet, Work};
 use crate::ir::{NodeId, Stitch};
 use crate::shape::ParametricSurface;
 
-/// Price of a shaped round, in stitch-weighted squared strain, and what is added for shaping in few or odd places.
+/// Price of a shaped round, in stitch-weighted squared strain; what is added for shaping in few places, for a number of
+/// places that does not go with the magic ring, and, on an open tube, for one that is no multiple of six.
 const PRICE: f64 = 0.012;
 const LOPSIDED: f64 = 0.25;
-const NOT_SIX: f64 = 0.02;
+const OUT_OF_STEP: f64 = 0.5;
+const OUT_OF_SIX: f64 = 0.05;
 /// How far a round may be from its girth.
 const BAND: f64 = 0.16;
 const BAND_LEAST: f64 = 3.0;
@@ -77,7 +79,7 @@ pub(crate) fn plan_counts(girths: &[f64], ring: Option<u32>) -> Option<Vec<u32>>
             // Shapings come in a number that divides the round.
             for repeats in 1..=(high.saturating_sub(n)).max(n.saturating_sub(low)).min(n) {
                 if n.is_multiple_of(repeats) {
-                    let price = shaping_price(repeats);
+                    let price = shaping_price(repeats, ring);
                     consider(n + repeats, price);
                     if n / repeats >= 2 {
                         consider(n - repeats, price);
@@ -102,9 +104,14 @@ pub(crate) fn plan_counts(girths: &[f64], ring: Option<u32>) -> Option<Vec<u32>>
     Some(counts)
 }
 
-fn shaping_price(repeats: u32) -> f64 {
+fn shaping_price(repeats: u32, ring: Option<u32>) -> f64 {
     let lopsided = if repeats < 4 { LOPSIDED / f64::from(repeats) } else { 0.0 };
-    PRICE + lopsided + if repeats.is_multiple_of(6) { 0.0 } else { NOT_SIX }
+    let odd = match ring {
+        Some(ring) if !repeats.is_multiple_of(ring) && !ring.is_multiple_of(repeats) => OUT_OF_STEP,
+        None if !repeats.is_multiple_of(6) => OUT_OF_SIX,
+        _ => 0.0,
+    };
+    PRICE + lopsided + odd
 }
 
 /// Lays the rounds over the first row that the sheet holds. Positions are the regular ones on the helix.
