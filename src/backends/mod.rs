@@ -6,6 +6,8 @@ use crate::settings;
 use serde::de::DeserializeOwned;
 use std::io;
 
+pub mod xml;
+
 /// A configured backend. The value of a backend is its options.
 pub trait Backend {
     /// Writes the program. Remarks (an approximation, an estimate) go to the sink.
@@ -84,7 +86,7 @@ impl Target {
 }
 
 /// Every target.
-pub static TARGETS: &[Target] = &[];
+pub static TARGETS: &[Target] = &[Target::of::<xml::Xml>()];
 
 /// The target with this name.
 pub fn target(name: &str) -> Option<&'static Target> {

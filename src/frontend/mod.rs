@@ -4,6 +4,8 @@ use crate::diag::{Sink, Source, Sources};
 use crate::ir::Program;
 use crate::shape::Shape;
 
+pub mod xml;
+
 /// What a file turned out to be.
 #[derive(Debug)]
 pub enum Input {
@@ -27,7 +29,7 @@ pub struct Reader {
 }
 
 /// Every reader.
-pub static READERS: &[Reader] = &[];
+pub static READERS: &[Reader] = &[xml::READER];
 
 /// The reader with this name.
 pub fn reader(name: &str) -> Option<&'static Reader> {

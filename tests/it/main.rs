@@ -3,7 +3,9 @@
 mod arbitrary;
 mod loops;
 mod passes;
+mod programs;
 mod render;
 mod surfaces;
 mod trace;
 mod verify;
+mod xml;
