@@ -45,3 +45,59 @@ pub fn pow(x: f64, y: f64) -> f64 {
 pub fn ln(x: f64) -> f64 {
     libm::log(x)
 }
+/// Sine and cosine of an angle in turns: exact at quarter turns, otherwise to about one unit in the last place,
+/// and several times as fast as by way of radians.
+#[inline]
+pub fn sin_cos_turns(turns: f64) -> (f64, f64) {
+    // Adding and subtracting 1.5 * 2^52 rounds to the nearest integer.
+    const ROUND: f64 = 6_755_399_441_055_744.0;
+    // Coefficients of the usual minimax polynomials on an eighth of a turn to both sides.
+    const SIN: [f64; 6] = [
+        -1.666_666_666_666_663_2e-1,
+        8.333_333_333_322_489e-3,
+        -1.984_126_982_985_795e-4,
+        2.755_731_370_707_006_8e-6,
+        -2.505_076_025_340_686_3e-8,
+        1.589_690_995_211_55e-10,
+    ];
+    const COS: [f64; 6] = [
+        4.166_666_666_666_66e-2,
+        -1.388_888_888_887_411e-3,
+        2.480_158_728_947_673e-5,
+        -2.755_731_435_139_066_3e-7,
+        2.087_572_321_298_174_8e-9,
+        -1.135_964_755_778_819_5e-11,
+    ];
+    let turns = if turns.abs() < 1e9 { turns } else { turns - turns.floor() };
+    let quarters = turns * 4.0 + ROUND - ROUND;
+    let x = (turns - quarters * 0.25) * TAU;
+    let z = x * x;
+    let power = |c: &[f64; 6]| c[0] + z * (c[1] + z * (c[2] + z * (c[3] + z * (c[4] + z * c[5]))));
+    let sin = x + x * z * power(&SIN);
+    let cos = 1.0 - (0.5 * z - z * z * power(&COS));
+    match quarters as i64 & 3 {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_agree_with_radians() {
+        for k in -4000..4000 {
+            let turns = f64::from(k) * 0.000_731;
+            let (sin, cos) = sin_cos_turns(turns);
+            let exact = sin_cos(turns * TAU);
+            assert!((sin - exact.0).abs() < 3e-15 && (cos - exact.1).abs() < 3e-15, "{turns}");
+            assert!((sin * sin + cos * cos - 1.0).abs() < 1e-15);
+        }
+        let quarters = [0.0, 0.25, 0.5, 0.75, 1.0, -0.25].map(sin_cos_turns);
+        assert_eq!(quarters, [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)]);
+        assert!(sin_cos_turns(f64::NAN).0.is_nan());
+    }
+}

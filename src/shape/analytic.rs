@@ -3,13 +3,13 @@
 //! All of them run up along +z but for the torus arc, and turn with v as the trait asks.
 
 use super::{Jet, ParametricSurface, measure};
-use crate::math::{PI, TAU, atan2, cos, ln, sin, sin_cos};
+use crate::math::{PI, TAU, atan2, cos, ln, sin, sin_cos, sin_cos_turns};
 use glam::DVec3;
 
 /// A point on the unit circle at `v` turns and its derivative by v.
 #[inline]
 fn around(v: f64) -> (DVec3, DVec3) {
-    let (sin, cos) = sin_cos(TAU * v);
+    let (sin, cos) = sin_cos_turns(v);
     (DVec3::new(cos, -sin, 0.0), DVec3::new(-sin, -cos, 0.0) * TAU)
 }
 

@@ -1,5 +1,6 @@
 //! Control curves: Bézier segments of degree 1 to 3 and chains of them, with exact derivatives and arc length.
 
+use crate::math;
 use glam::DVec3;
 
 /// One Bézier segment of degree 1 to 3.
@@ -135,7 +136,9 @@ impl Place {
 /// does not vanish at the ends, so the tangent is sound where control points coincide.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
-    points: [DVec3; 4],
+    /// Coefficients of the powers of `t`.
+    point: [DVec3; 4],
+    /// The same of `direction`.
     direction: [DVec3; 3],
     rise: u8,
     fall: u8,
@@ -143,8 +146,9 @@ struct Piece {
 
 impl Piece {
     /// `None` for a segment without extent.
-    fn new(bezier: &Bezier) -> Option<Self> {
-        let [a, b, c] = bezier.hodograph();
+    fn new(points: &[DVec3; 4]) -> Option<Self> {
+        let [p, q, r, s] = *points;
+        let [a, b, c] = [3.0 * (q - p), 3.0 * (r - q), 3.0 * (s - r)];
         let scale = a.length().max(b.length()).max(c.length());
         let none = |e: DVec3| e.length() <= 1e-9 * scale;
         if scale.is_nan() || scale <= 0.0 {
@@ -159,7 +163,15 @@ impl Piece {
             (true, false, false) => (linear(2.0 * b, c), 1, 0),
             (false, false, true) => (linear(a, 2.0 * b), 0, 1),
         };
-        Some(Self { points: bezier.cubic(), direction, rise, fall })
+        let point = [p, a, b - a, s - p - 3.0 * (r - q)];
+        let [a, b, c] = direction;
+        Some(Self { point, direction: [a, 2.0 * (b - a), (a + c) - 2.0 * b], rise, fall })
+    }
+
+    #[inline]
+    fn at(&self, t: f64) -> DVec3 {
+        let [a, b, c, d] = self.point;
+        a + (b + (c + d * t) * t) * t
     }
 
     #[inline]
@@ -176,6 +188,26 @@ impl Piece {
     }
 }
 
+/// Makes a joint smooth that is so but for the rounding of numbers in a file: a gap of up to [`JOINT_GAP`], a corner
+/// of up to [`JOINT_DEGREES`]. The handles next to the joint turn to a common direction.
+fn heal(before: &mut [DVec3; 4], after: &mut [DVec3; 4]) {
+    if before[3].distance(after[0]) <= JOINT_GAP {
+        after[0] = before[3];
+    }
+    let (inner, outer) = (before[3] - before[2], after[1] - after[0]);
+    let (Some(a), Some(b)) = (inner.try_normalize(), outer.try_normalize()) else { return };
+    if math::atan2(a.cross(b).length(), a.dot(b)).to_degrees() <= JOINT_DEGREES {
+        let common = (a + b).normalize();
+        before[2] = before[3] - common * inner.length();
+        after[1] = after[0] + common * outer.length();
+    }
+}
+
+/// Largest distance between the ends of two segments that passes for rounding, in mm.
+pub const JOINT_GAP: f64 = 0.05;
+/// Largest corner between two segments that passes for rounding, in degrees.
+pub const JOINT_DEGREES: f64 = 2.0;
+
 /// A chain of segments with one parameter in [0, 1], of which every segment takes an equal share; the parameter
 /// of a single segment is the plain Bézier parameter.
 #[derive(Clone, Debug)]
@@ -190,14 +222,21 @@ const STEPS: usize = 32;
 
 impl Chain {
     /// A chain of the given segments; the index of the first segment without extent otherwise (0 if there is
-    /// no segment at all). Segments are taken as they are: joints are not checked.
+    /// no segment at all). Joints are healed where only rounding spoils them, and not checked otherwise.
     pub fn new(segments: &[Bezier]) -> Result<Self, usize> {
         if segments.is_empty() {
             return Err(0);
         }
         let mut pieces = Vec::with_capacity(segments.len());
-        for (i, segment) in segments.iter().enumerate() {
-            pieces.push(Piece::new(segment).ok_or(i)?);
+        let mut cubics: Vec<[DVec3; 4]> = segments.iter().map(Bezier::cubic).collect();
+        for joint in 1..cubics.len() {
+            let (before, after) = cubics.split_at_mut(joint);
+            if let (Some(before), Some(after)) = (before.last_mut(), after.first_mut()) {
+                heal(before, after);
+            }
+        }
+        for (i, points) in cubics.iter().enumerate() {
+            pieces.push(Piece::new(points).ok_or(i)?);
         }
         let mut chain = Self { pieces, lengths: Vec::new() };
         let count = segments.len() * STEPS;
@@ -239,14 +278,14 @@ impl Chain {
     pub fn place(&self, segment: usize, t: f64) -> Place {
         let piece = &self.pieces[segment.min(self.pieces.len() - 1)];
         let count = self.pieces.len() as f64;
-        let direction = bernstein2(&piece.direction, t);
         let [a, b, c] = piece.direction;
-        let change = 2.0 * ((b - a) * (1.0 - t) + (c - b) * t);
+        let direction = a + (b + c * t) * t;
+        let change = b + c * (2.0 * t);
         let size = direction.length();
         let inverse = 1.0 / size;
         let tangent = direction * inverse;
         Place {
-            point: bernstein3(&piece.points, t),
+            point: piece.at(t),
             tangent,
             speed: size * piece.pace(t) * count,
             turn: (change - tangent * change.dot(tangent)) * (inverse * count),
@@ -256,7 +295,7 @@ impl Chain {
     /// Position at parameter `u` in mm.
     pub fn point(&self, u: f64) -> DVec3 {
         let (segment, t) = self.locate(u);
-        bernstein3(&self.pieces[segment].points, t)
+        self.pieces[segment].at(t)
     }
 
     /// Arc length of the whole chain in mm.

@@ -14,7 +14,7 @@ pub(super) fn check(chain: &Chain, frames: &Frames, stack: &Stack, breaks: &[f64
 }
 
 /// Curvature times the reach of the section toward the inner side; at 1 neighboring sections meet.
-fn ratio(chain: &Chain, frames: &Frames, stack: &Stack, w: f64) -> f64 {
+fn ratio(chain: &Chain, frames: &Frames, stack: &Stack, w: f64, samples: u32) -> f64 {
     let (segment, t) = chain.locate(w);
     let place = chain.place(segment, t);
     let axis = frames.axis(segment, t, &place);
@@ -24,23 +24,23 @@ fn ratio(chain: &Chain, frames: &Frames, stack: &Stack, w: f64) -> f64 {
         stack.reach(w, DVec2::new(place.turn.dot(axis), place.turn.dot(other)))
     } else {
         let behind = |k: u32| {
-            let jet = carry(&place, axis, &stack.eval(w, f64::from(k) / 64.0));
+            let jet = carry::<false>(&place, axis, &stack.eval(w, f64::from(k) / f64::from(samples)));
             place.speed - jet.du.dot(place.tangent)
         };
-        (0..64).map(behind).fold(f64::NEG_INFINITY, f64::max)
+        (0..samples).map(behind).fold(f64::NEG_INFINITY, f64::max)
     };
     if lag <= 1e-9 * (chain.length() + place.speed) { 0.0 } else { lag / place.speed }
 }
 
 fn tight(chain: &Chain, frames: &Frames, stack: &Stack, breaks: &[f64]) -> Result<(), Fault> {
     let panels = breaks.len().saturating_sub(1).max(1);
-    let steps = (512 / panels).clamp(8, 192);
+    let steps = if stack.planar() { (512 / panels).clamp(8, 192) } else { (192 / panels).clamp(6, 64) };
     let (mut worst, mut at, mut reach) = (0.0, 0.0, 0.0);
     for pair in breaks.windows(2) {
         let width = pair[1] - pair[0];
         for k in 0..=steps {
             let w = pair[0] + width * (k as f64 / steps as f64).clamp(1e-9, 1.0 - 1e-9);
-            let ratio = ratio(chain, frames, stack, w);
+            let ratio = ratio(chain, frames, stack, w, 24);
             if ratio > worst || ratio.is_nan() {
                 (worst, at, reach) = (ratio, w, width / steps as f64);
             }
@@ -51,9 +51,9 @@ fn tight(chain: &Chain, frames: &Frames, stack: &Stack, breaks: &[f64]) -> Resul
     }
     // Golden section around the worst sample.
     let (mut low, mut high) = ((at - reach).max(0.0), (at + reach).min(1.0));
-    for _ in 0..24 {
+    for _ in 0..16 {
         let (a, b) = (high - 0.618_034 * (high - low), low + 0.618_034 * (high - low));
-        let (at_a, at_b) = (ratio(chain, frames, stack, a), ratio(chain, frames, stack, b));
+        let (at_a, at_b) = (ratio(chain, frames, stack, a, 96), ratio(chain, frames, stack, b, 96));
         let better = if at_a > at_b { (at_a, a) } else { (at_b, b) };
         if better.0 > worst {
             (worst, at) = better;
@@ -86,7 +86,7 @@ fn crossing(chain: &Chain, frames: &Frames, stack: &Stack) -> Result<(), Fault> 
         let place = chain.place(segment, t);
         let axis = frames.axis(segment, t, &place);
         let ring: [DVec3; 8] =
-            std::array::from_fn(|k| carry(&place, axis, &stack.eval(w, k as f64 / 8.0)).point);
+            std::array::from_fn(|k| carry::<false>(&place, axis, &stack.eval(w, k as f64 / 8.0)).point);
         let center = ring.iter().sum::<DVec3>() / 8.0;
         let radius = ring.iter().map(|p| p.distance(center)).fold(f64::INFINITY, f64::min);
         Slice { w, center, tangent: place.tangent, radius }

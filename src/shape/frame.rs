@@ -1,12 +1,13 @@
 //! Rotation-minimizing frames along a chain by double reflection (Wang, Jüttler, Zheng and Liu 2008).
 
-use super::bezier::{Chain, Place};
+use super::bezier::{Chain, JOINT_DEGREES, Place};
 use glam::DVec3;
 
-/// Frames of a chain: a table of stations from which a frame anywhere is one reflection step away.
+/// Frames of a chain: a table of stations made by double reflection, with cubics between them.
 #[derive(Clone, Debug)]
 pub struct Frames {
-    stations: Vec<Station>,
+    /// For every step between stations the axis as a cubic, lowest power first.
+    steps: Vec<[DVec3; 4]>,
     per_segment: usize,
 }
 
@@ -26,10 +27,8 @@ pub struct Jump {
     pub degrees: f64,
 }
 
-/// Largest tangent jump at a joint that passes for rounding of the numbers in a file, in degrees.
-pub const JOINT_DEGREES: f64 = 2.0;
 /// Largest turn between two stations in radians; more stations are taken where there is more.
-const STEP_TURN: f64 = 0.05;
+const STEP_TURN: f64 = 0.025;
 const MOST_STATIONS: usize = 1 << 16;
 
 impl Frames {
@@ -55,17 +54,26 @@ impl Frames {
             }
             per_segment *= 2;
         }
-        let mut stations = Vec::with_capacity(segments * per_segment);
+        let mut steps = Vec::with_capacity(segments * per_segment);
         let first = chain.place(0, 0.0);
         let mut last = Station { point: first.point, tangent: first.tangent, axis: across(first.tangent) };
+        // Of one step: the derivative of the chain's parameter.
+        let share = 1.0 / (segments * per_segment) as f64;
         for segment in 0..segments {
-            for k in 0..per_segment {
-                let place = chain.place(segment, k as f64 / per_segment as f64);
-                last = Station { point: place.point, tangent: place.tangent, axis: last.carry(&place) };
-                stations.push(last);
+            let mut place = chain.place(segment, 0.0);
+            last = last.at(&place);
+            for k in 1..=per_segment {
+                let slope = |station: &Station, place: &Place| {
+                    place.tangent * (-share * place.turn.dot(station.axis))
+                };
+                let (a, da) = (last.axis, slope(&last, &place));
+                place = chain.place(segment, k as f64 / per_segment as f64);
+                last = last.at(&place);
+                let (rise, db) = (last.axis - a, slope(&last, &place));
+                steps.push([a, da, 3.0 * rise - 2.0 * da - db, da + db - 2.0 * rise]);
             }
         }
-        Ok(Self { stations, per_segment })
+        Ok(Self { steps, per_segment })
     }
 
     /// The axis of the frame at parameter `t` of a segment, where the chain is at `place`: a unit vector across
@@ -73,9 +81,16 @@ impl Frames {
     /// derivative of any vector q fixed in its cross plane is -(turn . q) tangent.
     #[inline]
     pub fn axis(&self, segment: usize, t: f64, place: &Place) -> DVec3 {
-        let step = ((t * self.per_segment as f64) as usize).min(self.per_segment - 1);
-        let index = (segment * self.per_segment + step).min(self.stations.len() - 1);
-        self.stations[index].carry(place)
+        let scaled = t * self.per_segment as f64;
+        let step = (scaled as usize).min(self.per_segment - 1);
+        let x = scaled - step as f64;
+        let [a, b, c, d] = self.steps[(segment * self.per_segment + step).min(self.steps.len() - 1)];
+        let axis = a + (b + (c + d * x) * x) * x;
+        let axis = axis - place.tangent * axis.dot(place.tangent);
+        let square = axis.length_squared();
+        // So close to one that a step of Newton gives the root.
+        let scale = if (square - 1.0).abs() < 1e-7 { 1.5 - 0.5 * square } else { 1.0 / square.sqrt() };
+        axis * scale
     }
 
     /// The axis at parameter `u` of the chain these frames were made for.
@@ -86,9 +101,13 @@ impl Frames {
 }
 
 impl Station {
+    /// The station at another place.
+    fn at(&self, place: &Place) -> Self {
+        Self { point: place.point, tangent: place.tangent, axis: self.carry(place) }
+    }
+
     /// The axis carried to another place by two reflections: the first in the plane halfway between the points,
     /// the second such that the tangents match.
-    #[inline]
     fn carry(&self, to: &Place) -> DVec3 {
         let chord = to.point - self.point;
         let square = chord.length_squared();

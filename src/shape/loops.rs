@@ -74,7 +74,9 @@ impl ClosedLine {
     #[inline]
     pub fn eval(&self, v: f64) -> (DVec3, DVec3) {
         let count = self.knots.len();
-        let scaled = (v - v.floor()) * count as f64;
+        // Truncation is cheaper than floor; v beyond the integers has no fraction to lose.
+        let fraction = v - (v as i64) as f64;
+        let scaled = (if fraction < 0.0 { fraction + 1.0 } else { fraction }) * count as f64;
         let index = (scaled as usize).min(count - 1);
         let t = scaled - index as f64;
         let [a, da] = self.knots[index];
@@ -215,7 +217,7 @@ impl Spline {
         let (span, from) = (piece / PARTS, (piece % PARTS) as f64 / PARTS as f64);
         let size = self.lengths[piece + 1] - self.lengths[piece];
         let mut t = from + (target - self.lengths[piece]) / size.max(f64::MIN_POSITIVE) / PARTS as f64;
-        for _ in 0..3 {
+        for _ in 0..2 {
             let miss = self.lengths[piece] + self.length(span, from, t) - target;
             let speed = self.at(span, t).1.length();
             if speed > 0.0 {

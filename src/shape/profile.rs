@@ -4,7 +4,7 @@ use super::loops::LoopStack;
 use super::smooth;
 use super::spec::{Fault, Interpolation, Profile, TubeSpec};
 use super::{End, Jet};
-use crate::math::{TAU, sin_cos};
+use crate::math::{TAU, sin_cos_turns};
 use glam::{DVec2, DVec3};
 
 /// Sections a tube may have.
@@ -186,7 +186,7 @@ impl Stack {
             Kind::Loops(stack) => return stack.eval(w, v),
         };
         let span = span_at(spans, w);
-        let (sin, cos) = sin_cos(-TAU * v);
+        let (sin, cos) = sin_cos_turns(-v);
         let (a, along) = span.number(0, w, squared);
         let (b, across) = span.number(1, w, squared);
         let (x, dx) = span.number(2, w, false);

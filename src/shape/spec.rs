@@ -72,6 +72,13 @@ pub enum Fault {
         /// Index of the segment.
         segment: usize,
     },
+    /// A segment of the curve does not begin where the one before ends.
+    Gap {
+        /// Index of the segment.
+        segment: usize,
+        /// Distance in mm.
+        distance: f64,
+    },
     /// The place of a section is outside of [0, 1], or not after the one before.
     SectionOrder {
         /// Index of the section.
@@ -117,6 +124,13 @@ impl fmt::Display for Fault {
             Self::Empty => write!(f, "no curve or no section"),
             Self::TooMany { limit } => write!(f, "more than {limit} entries"),
             Self::ZeroLength { segment } => write!(f, "curve segment {} has no length", segment + 1),
+            Self::Gap { segment, distance } => {
+                write!(
+                    f,
+                    "curve segment {} begins {distance:.2} mm from the end of the one before",
+                    segment + 1
+                )
+            }
             Self::SectionOrder { section } => write!(f, "section {} is out of order", section + 1),
             Self::SectionSize { section } => write!(f, "section {} has no size", section + 1),
             Self::SectionNotEnclosing { section } => {

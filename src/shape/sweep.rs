@@ -1,6 +1,6 @@
 //! The swept tube: sections carried along a control curve on rotation-minimizing frames.
 
-use super::bezier::{Chain, Place};
+use super::bezier::{Chain, JOINT_GAP, Place};
 use super::frame::Frames;
 use super::meridian::Meridian;
 use super::profile::Stack;
@@ -56,6 +56,12 @@ impl Sweep {
         }
         if spec.curve.len() > MOST_SEGMENTS {
             return Err(Fault::TooMany { limit: MOST_SEGMENTS });
+        }
+        for (joint, pair) in spec.curve.windows(2).enumerate() {
+            let distance = pair[0].point(1.0).distance(pair[1].point(0.0));
+            if distance > JOINT_GAP {
+                return Err(Fault::Gap { segment: joint + 1, distance });
+            }
         }
         let chain = Chain::new(&spec.curve).map_err(|segment| Fault::ZeroLength { segment })?;
         let stack = Stack::new(spec)?;
@@ -136,7 +142,12 @@ impl Sweep {
         let (segment, t) = self.chain.locate(w);
         let place = self.chain.place(segment, t);
         let axis = self.frames.axis(segment, t, &place);
-        carry(&place, axis, &self.stack.eval(w, v))
+        let profile = self.stack.eval(w, v);
+        if self.stack.planar() {
+            carry::<true>(&place, axis, &profile)
+        } else {
+            carry::<false>(&place, axis, &profile)
+        }
     }
 
     /// The surface on the curve's part of u.
@@ -184,18 +195,20 @@ impl Sweep {
     }
 }
 
-/// A profile carried into space. The frame turns about the tangent nowhere, so its vectors change along the tangent only.
+/// A profile carried into space; `FLAT` if it has no part along the tangent. The frame turns about the tangent nowhere,
+/// so its vectors change along the tangent only.
 #[inline]
-pub(super) fn carry(place: &Place, axis: DVec3, profile: &Jet) -> Jet {
+pub(super) fn carry<const FLAT: bool>(place: &Place, axis: DVec3, profile: &Jet) -> Jet {
     let other = place.tangent.cross(axis);
-    let globe = |q: DVec3| axis * q.x + other * q.y + place.tangent * q.z;
-    let p = profile.point;
-    let bend = p.x * place.turn.dot(axis) + p.y * place.turn.dot(other);
-    Jet {
-        point: place.point + globe(p),
-        du: globe(profile.du) + place.tangent * (place.speed - bend) + place.turn * p.z,
-        dv: globe(profile.dv),
-    }
+    let globe = |q: DVec3| {
+        let across = axis * q.x + other * q.y;
+        if FLAT { across } else { across + place.tangent * q.z }
+    };
+    let arm = globe(profile.point);
+    // The tangent's turn is across it, so the part of the arm along the tangent does not count.
+    let along = place.tangent * (place.speed - place.turn.dot(arm));
+    let lift = if FLAT { DVec3::ZERO } else { place.turn * profile.point.z };
+    Jet { point: place.point + arm, du: globe(profile.du) + along + lift, dv: globe(profile.dv) }
 }
 
 /// Parameters of all joints and sections, ascending, from 0 to 1.

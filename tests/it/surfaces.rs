@@ -488,11 +488,43 @@ fn what_is_no_tube_is_refused_with_the_place() {
         Err(Fault::Kink { u, degrees }) => assert!(u == 0.5 && (degrees - 90.0).abs() < 1e-9),
         other => panic!("{other:?}"),
     }
+    let gap = vec![
+        Bezier::line(DVec3::ZERO, DVec3::new(0.0, 0.0, 50.0)),
+        Bezier::line(DVec3::new(0.0, 3.0, 50.0), DVec3::new(0.0, 3.0, 90.0)),
+    ];
+    let gap = Sweep::new(&open_tube(gap, vec![circle(0.0, 5.0)])).map(|_| ());
+    assert_eq!(gap, Err(Fault::Gap { segment: 1, distance: 3.0 }));
     // A loop of the curve that comes back through itself; a smaller tube fits past.
     let knot = [[0.0; 3], [300.0, 0.0, 150.0], [-200.0, 0.0, 150.0], [100.0, 0.0, 0.0]];
     assert!(matches!(sweep(&knot), Err(Fault::SelfIntersect { .. })));
     let past = [[0.0; 3], [300.0, 0.0, 150.0], [-200.0, 60.0, 150.0], [100.0, 60.0, 0.0]];
     assert_eq!(sweep(&past), Ok(()));
+}
+
+/// Four quarter bends: a ring that closes on itself, ends touching.
+#[test]
+fn a_ring_may_close_on_itself_and_rounded_joints_heal() {
+    let directions = [DVec3::X, DVec3::Z, -DVec3::X, -DVec3::Z];
+    let mut from = DVec3::ZERO;
+    let round = |p: DVec3| (p * 100.0).round() / 100.0 + DVec3::new(0.0, 0.0, 0.004 * p.x.signum());
+    let curve: Vec<Bezier> = (0..4)
+        .map(|k| {
+            let segment = quarter(directions[k], directions[(k + 1) % 4]);
+            let points: Vec<DVec3> = segment.points().iter().map(|p| round(from + *p)).collect();
+            from += segment.point(1.0);
+            Bezier::new(&points).unwrap()
+        })
+        .collect();
+    let sweep = Sweep::new(&open_tube(curve, vec![circle(0.0, 8.0)])).unwrap();
+    let exact = TAU * 8.0 * TAU * 20.0;
+    assert!((area(&sweep, 64, 32) / exact - 1.0).abs() < 2e-3);
+    for joint in [0.25, 0.5, 0.75] {
+        let u = sweep.surface_parameter(joint);
+        for k in 0..8 {
+            let v = f64::from(k) / 8.0;
+            assert!(sweep.point(u - 1e-9, v).distance(sweep.point(u + 1e-9, v)) < 1e-5, "no step at {joint}");
+        }
+    }
 }
 
 fn coordinate() -> impl Strategy<Value = f64> {
