@@ -54,7 +54,7 @@ pub fn sin_cos_turns(turns: f64) -> (f64, f64) {
     // Coefficients of the usual minimax polynomials on an eighth of a turn to both sides.
     const SIN: [f64; 6] = [
         -1.666_666_666_666_663_2e-1,
-        8.333_333_333_322_489e-3,
+        8.333_333_333_322_49e-3,
         -1.984_126_982_985_795e-4,
         2.755_731_370_707_006_8e-6,
         -2.505_076_025_340_686_3e-8,
@@ -65,7 +65,7 @@ pub fn sin_cos_turns(turns: f64) -> (f64, f64) {
         -1.388_888_888_887_411e-3,
         2.480_158_728_947_673e-5,
         -2.755_731_435_139_066_3e-7,
-        2.087_572_321_298_174_8e-9,
+        2.087_572_321_298_175e-9,
         -1.135_964_755_778_819_5e-11,
     ];
     let turns = if turns.abs() < 1e9 { turns } else { turns - turns.floor() };
