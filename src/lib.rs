@@ -12,6 +12,7 @@ pub mod generate;
 pub mod ir;
 pub mod lower;
 pub mod math;
+pub mod metrics;
 pub mod passes;
 pub mod settings;
 pub mod shape;

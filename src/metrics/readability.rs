@@ -1,0 +1,119 @@
+//! How pleasant a pattern is to work, from its folded rows and its graph.
+
+use crate::ir::{Block, Graph, NodeId, Op, Pattern};
+use serde::Serialize;
+
+/// Numbers on the reading of a pattern.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Readability {
+    /// Words of the folded pattern for each stitch: a run, a repeat and a turn are one each.
+    pub words_per_stitch: f64,
+    /// Most words in one round.
+    pub most_words: usize,
+    /// Share of rounds equal to the one before.
+    pub equal_rounds: f64,
+    /// Share of increases within one stitch of an increase one round below; stacked ones draw a visible ridge.
+    pub stacked_increases: f64,
+    /// Short rows for each thousand stitches.
+    pub short_rows_per_thousand: f64,
+    /// Longest run of equal stitches that has to be counted, where it is not the whole round.
+    pub longest_run: u32,
+}
+
+impl Readability {
+    /// Reads a pattern and, where it has them, its graphs.
+    pub fn of(pattern: &Pattern, graphs: &[Graph]) -> Self {
+        let mut words = 0_usize;
+        let (mut rounds, mut equal, mut stitches, mut turns) = (0_u64, 0_u64, 0_u64, 0_u64);
+        let (mut longest_run, mut most_words) = (0, 0);
+        for part in &pattern.parts {
+            let mut before: Option<&Block> = None;
+            for row in &part.rows {
+                let folded = words_of(&row.body);
+                words += folded;
+                most_words = most_words.max(folded);
+                let times = u64::from(row.times);
+                rounds += times;
+                equal += times.saturating_sub(1) + u64::from(before == Some(&row.body));
+                before = Some(&row.body);
+                let (worked, turned) = count(&row.body);
+                stitches += worked.saturating_mul(times);
+                turns += turned.saturating_mul(times);
+                if row.body.ops().len() > 1 {
+                    longest_run = longest_run.max(longest(&row.body));
+                }
+            }
+        }
+        let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+        Self {
+            words_per_stitch: share(words as f64, stitches as f64),
+            most_words,
+            equal_rounds: share(equal as f64, rounds as f64),
+            stacked_increases: stacked(graphs),
+            short_rows_per_thousand: share(500.0 * turns as f64, stitches as f64),
+            longest_run,
+        }
+    }
+}
+
+fn words_of(block: &Block) -> usize {
+    block
+        .ops()
+        .iter()
+        .map(|op| match op {
+            Op::Repeat { body, .. } => 1 + words_of(body),
+            Op::Work { .. } | Op::Turn(_) | Op::Hold { .. } | Op::Leave { .. } | Op::Color(_) => 1,
+        })
+        .sum()
+}
+
+/// Stitches and turns, multiplied out.
+fn count(block: &Block) -> (u64, u64) {
+    block.ops().iter().fold((0_u64, 0_u64), |(stitches, turns), op| match op {
+        Op::Work { times, .. } => (stitches.saturating_add(u64::from(*times)), turns),
+        Op::Turn(_) => (stitches, turns + 1),
+        Op::Repeat { body, times } => {
+            let (inner, turned) = count(body);
+            let times = u64::from(*times);
+            (
+                stitches.saturating_add(inner.saturating_mul(times)),
+                turns.saturating_add(turned.saturating_mul(times)),
+            )
+        }
+        Op::Hold { .. } | Op::Leave { .. } | Op::Color(_) => (stitches, turns),
+    })
+}
+
+fn longest(block: &Block) -> u32 {
+    block
+        .ops()
+        .iter()
+        .map(|op| match op {
+            Op::Work { times, .. } => *times,
+            Op::Repeat { body, .. } => longest(body),
+            Op::Turn(_) | Op::Hold { .. } | Op::Leave { .. } | Op::Color(_) => 0,
+        })
+        .max()
+        .unwrap_or(0)
+}
+
+fn stacked(graphs: &[Graph]) -> f64 {
+    let (mut all, mut stacked) = (0_usize, 0_usize);
+    for graph in graphs {
+        let mut made_by_increase = vec![false; graph.nodes.len()];
+        let increases =
+            || graph.tiles.iter().filter(|tile| tile.stitch.is_some_and(crate::ir::Stitch::is_increase));
+        for id in increases().flat_map(|tile| tile.top.iter()) {
+            if let Some(made) = made_by_increase.get_mut(*id as usize) {
+                *made = true;
+            }
+        }
+        let made = |id: NodeId| made_by_increase.get(id as usize) == Some(&true);
+        for tile in increases() {
+            all += 1;
+            let near = |id: &NodeId| made(*id) || made(id.saturating_sub(1)) || made(id.saturating_add(1));
+            stacked += usize::from(tile.base.iter().any(near));
+        }
+    }
+    if all == 0 { 0.0 } else { stacked as f64 / all as f64 }
+}
