@@ -4,6 +4,7 @@
 //! frac tau). Nodes are open loops. Surfaces of revolution get clean repeats ([`symmetric`]); all others are woven
 //! row by row ([`weave`]). In the end all nodes settle on the surface ([`relax`]).
 
+pub mod capunaman;
 mod finish;
 mod first_row;
 mod options;

@@ -1,6 +1,7 @@
 //! The one test binary.
 
 mod arbitrary;
+mod baseline;
 mod loops;
 mod passes;
 mod programs;
