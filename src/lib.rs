@@ -19,8 +19,10 @@ pub mod shape;
 
 use diag::{Sink, Source, Sources};
 use frontend::{Input, Reader};
-use ir::{Gauge, Pattern, Program};
-use shape::Shape;
+use generate::capunaman::Baseline;
+use ir::{Finish, Gauge, Pattern, Program};
+use metrics::{Measure, Mesh, Sampler};
+use shape::{End, Shape};
 
 /// What the stages before printing may be told.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -39,22 +41,28 @@ pub fn compile(
     sources: &mut Sources<'_>,
     sink: &mut Sink<'_>,
 ) -> Option<Program> {
+    match read(source, reader, options, sources, sink)? {
+        Input::Shape(shape) => program(&shape, options, sink),
+        Input::Program(program) => Some(*program),
+    }
+}
+
+/// From an opened file to a shape or a pattern.
+pub fn read(
+    source: &Source,
+    reader: &Reader,
+    options: &Options,
+    sources: &mut Sources<'_>,
+    sink: &mut Sink<'_>,
+) -> Option<Input> {
     sink.stage("read");
     let errors = sink.errors();
-    let input = (reader.read)(source, sources, sink)?;
-    if sink.errors() > errors {
-        return None;
+    let mut input = (reader.read)(source, sources, sink).filter(|_| sink.errors() == errors)?;
+    match &mut input {
+        Input::Shape(shape) => shape.gauge = options.gauge.unwrap_or(shape.gauge),
+        Input::Program(program) => program.gauge = options.gauge.or(program.gauge),
     }
-    match input {
-        Input::Shape(mut shape) => {
-            shape.gauge = options.gauge.unwrap_or(shape.gauge);
-            program(&shape, options, sink)
-        }
-        Input::Program(mut program) => {
-            program.gauge = options.gauge.or(program.gauge);
-            Some(*program)
-        }
-    }
+    Some(input)
 }
 
 /// From a shape to a program: a graph and a part for each tube, folded by the passes.
@@ -66,16 +74,45 @@ pub fn program(shape: &Shape, options: &Options, sink: &mut Sink<'_>) -> Option<
         pattern: Pattern::default(),
         graphs: Vec::new(),
     };
-    sink.stage("generate");
     for tube in &shape.tubes {
-        program.graphs.push(generate::generate(tube, &shape.gauge, &options.generate, sink)?);
+        sink.stage("generate");
+        let graph = generate::generate(tube, &shape.gauge, &options.generate, sink)?;
+        sink.stage("trace");
+        let finish = match tube.end {
+            End::Open => Finish::Open,
+            End::Closed => Finish::DrawnShut,
+        };
+        program.pattern.parts.push(lower::trace(&tube.name, &graph, finish));
+        program.graphs.push(graph);
     }
-    fold(&mut program, sink);
+    sink.stage("passes");
+    passes::run(&mut program, sink);
     Some(program)
 }
 
-/// Runs all [passes](passes::PASSES) in order.
-pub fn fold(program: &mut Program, sink: &mut Sink<'_>) {
-    sink.stage("passes");
-    passes::run(program, sink);
+/// Measures the graphs of a program against the shape that they were generated from.
+pub fn measure(shape: &Shape, program: &Program) -> Measure {
+    let mut sampler = Sampler::new(shape.gauge);
+    for (tube, graph) in shape.tubes.iter().zip(&program.graphs) {
+        sampler.add(tube, &Mesh::of_graph(graph));
+        sampler.count(graph);
+    }
+    sampler.finish()
+}
+
+/// Lays the [baseline](generate::capunaman) of the paper's tables on each tube of a shape.
+pub fn baseline(shape: &Shape, sink: &mut Sink<'_>) -> Option<Vec<Baseline>> {
+    sink.stage("generate");
+    shape.tubes.iter().map(|tube| generate::capunaman::capunaman(tube, &shape.gauge, sink)).collect()
+}
+
+/// Measures baseline nets, one for each tube of the shape.
+pub fn measure_baseline(shape: &Shape, nets: &[Baseline]) -> Measure {
+    let mut sampler = Sampler::new(shape.gauge);
+    for (tube, net) in shape.tubes.iter().zip(nets) {
+        sampler.add(tube, &Mesh::of_wales(&net.nodes, net.start(), &net.wales));
+        let counts = net.counts();
+        sampler.note(counts.increases, counts.decreases, counts.crossings);
+    }
+    sampler.finish()
 }

@@ -48,6 +48,10 @@ pub(crate) enum Color {
 pub(crate) enum Command {
     /// Compile a shape to a pattern and other outputs
     Build(Build),
+    /// Measure how close the stitches come to the shape
+    Measure(Measure),
+    /// Time the compiler; with --paper, set it beside the tables of the paper
+    Bench(Bench),
     /// List what there is: targets, readers, passes, stitches, diagnostic codes
     List(List),
     /// Explain a diagnostic, such as E0101
@@ -105,6 +109,43 @@ pub(crate) enum Level {
     Graph,
     /// What the hook does.
     Pattern,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Measure {
+    /// Shape file; `-` is stdin
+    #[arg(value_name = "INPUT")]
+    pub(crate) input: String,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Who lays the stitches
+    #[arg(long, value_name = "NAME", default_value = "picot")]
+    pub(crate) algorithm: Algorithm,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+}
+
+/// An algorithm that lays stitches on a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Algorithm {
+    /// Our own.
+    Picot,
+    /// The baseline of the paper's tables (Çapunaman, Bingöl and Gürsoy 2017).
+    Capunaman,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Bench {
+    /// Print the paper's Tables 1 to 3 beside our numbers
+    #[arg(long)]
+    pub(crate) paper: bool,
+    /// Write all numbers to a file as JSON; `-` is stdout
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<String>,
+    /// Runs of each case; the median counts
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub(crate) runs: u32,
 }
 
 #[derive(Debug, Args)]

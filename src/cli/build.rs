@@ -9,8 +9,10 @@ use super::{Failure, Status};
 use picot::backends::{self, TARGETS, Target, target, target_for_extension};
 use picot::diag::{Sink, Sources, did_you_mean};
 use picot::frontend::{READERS, Reader, reader, reader_for_extension};
-use picot::ir::{Op, Program, verify::verify};
+use picot::ir::verify::{Verified, verify};
+use picot::ir::{Part, Program};
 use rayon::prelude::*;
+use std::fmt::Write;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
@@ -45,7 +47,7 @@ struct Done {
 pub(crate) fn run(arguments: &Build, report: Report) -> Result<Status, Failure> {
     let plan = plan(arguments)?;
     let routed = route(&arguments.reading, &plan.targets)?;
-    let stdin = if arguments.inputs.iter().any(|input| input == "-") { files::stdin()? } else { Vec::new() };
+    let stdin = files::stdin_if_named(arguments.inputs.iter())?;
     let bar = Bar::new(plan.jobs.len() as u64, report.quiet());
     let results: Vec<Done> = if let [job] = plan.jobs.as_slice() {
         let watch = Watch::new(Some(&bar));
@@ -137,9 +139,7 @@ fn stages(
     sink: &mut Sink<'_>,
     done: &mut Done,
 ) -> Result<(), Failure> {
-    let source =
-        if job.input == "-" { sources.add("<stdin>", stdin.to_vec()) } else { sources.open(&job.input) };
-    let source = source.map_err(|error| Failure::file(&job.input, error))?;
+    let source = files::open(sources, &job.input, stdin)?;
     let Some(program) = picot::compile(&source, job.reader, &routed.options, sources, sink) else {
         return Ok(());
     };
@@ -170,7 +170,7 @@ fn stages(
         })?;
         done.outputs.push(bytes);
     }
-    done.summary = summary(&program);
+    done.summary = summary(&verified);
     Ok(())
 }
 
@@ -358,31 +358,27 @@ fn names<'n>(all: impl Iterator<Item = &'n str>) -> String {
     all.collect::<Vec<_>>().join(", ")
 }
 
-/// Rounds and stitches, for the last line of a run.
-fn summary(program: &Program) -> String {
-    fn stitches(ops: &[Op]) -> u64 {
-        ops.iter().fold(0, |sum, op| {
-            sum + match op {
-                Op::Work { times, .. } => u64::from(*times),
-                Op::Repeat { body, times } => stitches(body.ops()).saturating_mul(u64::from(*times)),
-                Op::Turn(_) | Op::Hold { .. } | Op::Leave { .. } | Op::Color(_) => 0,
-            }
-        })
+/// Rounds, stitches and yarn, for the last lines of a run.
+pub(crate) fn summary(program: &Verified<'_>) -> String {
+    let facts = program.facts();
+    let mut text =
+        format!("{}: {} rounds, {} stitches", program.name, rounds(program), facts.stitches(program));
+    if let Some(gauge) = program.gauge {
+        let _ = write!(text, ", about {:.0} m of yarn", facts.yarn(program, gauge.width) / 1000.0);
+        if gauge.estimated() {
+            text.push_str(" (the gauge is an estimate)");
+        }
     }
-    let parts = &program.pattern.parts;
-    let rounds: u64 = parts
-        .iter()
-        .map(|part| {
-            let rows: u64 = part.rows.iter().map(|row| u64::from(row.times)).sum();
-            rows + u64::from(part.first_number()) - 1
-        })
-        .sum();
-    let count: u64 = parts
-        .iter()
-        .flat_map(|part| &part.rows)
-        .map(|row| stitches(row.body.ops()) * u64::from(row.times))
-        .sum();
-    format!("{}: {rounds} rounds, {count} stitches", program.name)
+    text
+}
+
+/// Rounds of all parts, each part once.
+pub(crate) fn rounds(program: &Program) -> u64 {
+    let of = |part: &Part| {
+        let rows: u64 = part.rows.iter().map(|row| u64::from(row.times)).sum();
+        rows + u64::from(part.first_number()) - 1
+    };
+    program.pattern.parts.iter().map(of).sum()
 }
 
 /// What a person would do now.

@@ -1,9 +1,11 @@
 //! Files in and out: bounded reads, and writes that happen whole or not at all.
 
 use super::Failure;
+use picot::diag::{Source, Sources};
 use std::fs;
 use std::io::{self, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 /// Largest input in bytes.
 const MAX_FILE: u64 = 1 << 30;
@@ -14,8 +16,17 @@ pub(crate) fn load(name: &str) -> io::Result<Vec<u8>> {
     bounded(fs::File::open(name)?)
 }
 
-/// Reads stdin to its end.
-pub(crate) fn stdin() -> Result<Vec<u8>, Failure> {
+/// Opens an input; `-` is what came through stdin.
+pub(crate) fn open(sources: &mut Sources<'_>, input: &str, stdin: &[u8]) -> Result<Rc<Source>, Failure> {
+    let source = if input == "-" { sources.add("<stdin>", stdin.to_vec()) } else { sources.open(input) };
+    source.map_err(|error| Failure::file(input, error))
+}
+
+/// Reads stdin to its end when one of the inputs is `-`.
+pub(crate) fn stdin_if_named<'i>(mut inputs: impl Iterator<Item = &'i String>) -> Result<Vec<u8>, Failure> {
+    if !inputs.any(|input| input == "-") {
+        return Ok(Vec::new());
+    }
     let stdin = io::stdin();
     if stdin.is_terminal() {
         return Err(Failure::usage("input `-` is a terminal").help("pipe a file into it, or name the file"));

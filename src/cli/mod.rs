@@ -1,12 +1,14 @@
 //! The command line: dispatch, exit status, and what happens when things go wrong. A client of the library like any other.
 
 mod args;
+mod bench;
 mod build;
 mod completions;
 mod explain;
 mod files;
 mod list;
 mod man;
+mod measure;
 mod progress;
 mod report;
 mod route;
@@ -101,6 +103,8 @@ pub(crate) fn main() -> ExitCode {
     let report = report::Report::new(&cli.global);
     let outcome = match &cli.command {
         Command::Build(arguments) => build::run(arguments, report),
+        Command::Measure(arguments) => measure::run(arguments, report),
+        Command::Bench(arguments) => bench::run(arguments, report),
         Command::List(arguments) => list::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
         Command::Completions(arguments) => completions::run(arguments),

@@ -2,6 +2,8 @@
 
 use super::Failure;
 use super::args::{Color, Global};
+use picot::diag::position::Positions;
+use picot::diag::render::terminal::terminal;
 use picot::diag::{Diagnostic, Severity, Sources};
 use std::fmt::Write as _;
 use std::io::{self, IsTerminal, Write as _};
@@ -33,27 +35,14 @@ impl Report {
 
     /// Renders findings, so that a worker can hand them over as text.
     pub(crate) fn render(self, sources: &Sources<'_>, diagnostics: &[Diagnostic]) -> String {
+        let positions = Positions::new(sources);
         let mut text = String::new();
         for diagnostic in diagnostics {
             if self.quiet && diagnostic.severity == Severity::Note {
                 continue;
             }
-            let place = diagnostic.labels.first().and_then(|label| sources.locate(label.span));
-            if let Some((source, range)) = place {
-                let before = source.bytes().get(..range.start).unwrap_or_default();
-                let line = before.split(|byte| *byte == b'\n').count();
-                let _ = write!(text, "{}:{line}: ", source.name());
-            }
-            let _ = writeln!(
-                text,
-                "{}[{}]: {}",
-                diagnostic.severity.name(),
-                diagnostic.code.as_str(),
-                diagnostic.message
-            );
-            if let Some(help) = &diagnostic.help {
-                let _ = writeln!(text, "  help: {help}");
-            }
+            text.push_str(&terminal(diagnostic, &positions, self.color));
+            text.push_str("\n\n");
         }
         text
     }

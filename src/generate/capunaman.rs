@@ -31,15 +31,37 @@ impl Baseline {
         self.rows.get(1).copied().unwrap_or(self.nodes.len())
     }
 
-    /// Nodes with two tops or more, nodes with two bases or more, and pairs of neighboring wales that cross.
-    pub fn counts(&self) -> (usize, usize, usize) {
-        let same_base = self.wales.windows(2).filter(|pair| pair[0].0 == pair[1].0).count();
+    /// Counts of shapings and crossings.
+    pub fn counts(&self) -> Counts {
+        let increases = self.wales.windows(2).filter(|pair| pair[0].0 == pair[1].0).count();
         let mut tops: Vec<NodeId> = self.wales.iter().map(|wale| wale.1).collect();
         let crossings = tops.windows(2).filter(|pair| pair[0] > pair[1]).count();
         tops.sort_unstable();
-        let same_top = tops.windows(2).filter(|pair| pair[0] == pair[1]).count();
-        (same_base, same_top, crossings)
+        let decreases = tops.windows(2).filter(|pair| pair[0] == pair[1]).count();
+        Counts { increases, decreases, crossings }
     }
+
+    /// The first row, from 1, that no hook can work: a loop of it is skipped, or wales out of it cross.
+    pub fn unworkable_row(&self) -> Option<usize> {
+        let crossing =
+            self.wales.windows(2).find(|pair| pair[0].1 > pair[1].1).map(|pair| pair[0].0 as usize);
+        let worked = self.rows.len().checked_sub(2).map_or(0, |last| self.rows[last]);
+        let bases: std::collections::BTreeSet<NodeId> = self.wales.iter().map(|wale| wale.0).collect();
+        let skipped = (0..worked).find(|node| !bases.contains(&(*node as NodeId)));
+        let node = crossing.into_iter().chain(skipped).min()?;
+        Some(self.rows.partition_point(|first| *first <= node))
+    }
+}
+
+/// What a baseline net is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Wales beyond the first out of a node.
+    pub increases: usize,
+    /// Wales beyond the first into a node.
+    pub decreases: usize,
+    /// Pairs of neighboring wales that cross.
+    pub crossings: usize,
 }
 
 /// Lays the baseline on a tube; `None` with the reason in the sink when not two rows fit, or too many nodes.
@@ -47,7 +69,8 @@ pub fn capunaman(tube: &Tube, gauge: &Gauge, sink: &mut Sink<'_>) -> Option<Base
     let surface = &*tube.surface;
     let knots = knots(surface, gauge.height);
     if knots.len() < 3 {
-        let message = format!("the baseline needs two rows of {:.2} mm, and this tube is too short", gauge.height);
+        let message =
+            format!("the baseline needs two rows of {:.2} mm, and this tube is too short", gauge.height);
         sink.push(Diagnostic::new(Code::TooLarge, message).in_round(&tube.name, None));
         return None;
     }
@@ -67,7 +90,8 @@ pub fn capunaman(tube: &Tube, gauge: &Gauge, sink: &mut Sink<'_>) -> Option<Base
         let below = net.rows.last().map_or(0, |first| net.nodes.len() - first);
         distances = distances.saturating_add(below.saturating_mul(count as usize));
         if count > f64::from(MAX_ROW) || distances > MAX_DISTANCES {
-            let message = format!("row {} of the baseline has {count:.0} stitches, too many for its search", row + 1);
+            let message =
+                format!("row {} of the baseline has {count:.0} stitches, too many for its search", row + 1);
             sink.push(
                 Diagnostic::new(Code::TooLarge, message)
                     .in_round(&tube.name, None)

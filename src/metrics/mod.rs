@@ -275,7 +275,7 @@ impl Sampler {
         match tube.start {
             End::Open => open += first,
             End::Closed => {
-                self.tiles += disc(mesh, &first_row, surface.point(0.0, 0.0), mesh.nodes.get(first))
+                self.tiles += disc(mesh, &first_row, surface.point(0.0, 0.0), mesh.nodes.get(first));
             }
         }
         match tube.end {

@@ -11,10 +11,10 @@ use picot::shape::{Bezier, End, Interpolation, Profile, Section, Sweep, Tube, Tu
 fn shape(name: &str) -> Tube {
     let scale = 1000.0 / 3.0;
     let (curve, radii) = match name {
-        "c" => ([[0.0, 0.0, 0.0], [0.0, -0.02 * scale, 0.05 * scale], [0.0, 0.0, 0.1 * scale]], [
-            0.05 * scale,
-            0.02 * scale,
-        ]),
+        "c" => (
+            [[0.0, 0.0, 0.0], [0.0, -0.02 * scale, 0.05 * scale], [0.0, 0.0, 0.1 * scale]],
+            [0.05 * scale, 0.02 * scale],
+        ),
         _ => ([[0.0, 0.0, 0.0], [0.0, 0.0, 90.0], [0.0, 100.0, 0.0]], [10.0, 4.0]),
     };
     let section = |at: f64, radius: f64| Section {
@@ -22,13 +22,18 @@ fn shape(name: &str) -> Tube {
         profile: Profile::Ellipse { axes: [radius; 2], offset: DVec2::ZERO },
     };
     let spec = TubeSpec {
-        curve: vec![Bezier::new(&curve.map(DVec3::from_array)).unwrap()],
+        curve: vec![Bezier::new(&curve.map(DVec3::from_array)).expect("three points")],
         sections: vec![section(0.0, radii[0]), section(1.0, radii[1])],
         interpolation: Interpolation::Linear,
         start: End::Open,
         end: End::Open,
     };
-    Tube { name: name.into(), surface: Box::new(Sweep::new(&spec).unwrap()), start: End::Open, end: End::Open }
+    Tube {
+        name: name.into(),
+        surface: Box::new(Sweep::new(&spec).expect("a sound tube")),
+        start: End::Open,
+        end: End::Open,
+    }
 }
 
 /// Figures of the published implementation. It takes tangents by differences over 0.05 of the curve parameter, so its

@@ -1,0 +1,230 @@
+//! `picot measure`: how close the stitches of an input come to its shape.
+
+use super::args::{Algorithm, Measure as Arguments};
+use super::build::{reader_of, rounds};
+use super::progress::{Bar, Watch};
+use super::report::{self, Report};
+use super::route::route;
+use super::{Failure, Status, files, print, print_json};
+use picot::diag::{Sink, Sources};
+use picot::frontend::Input;
+use picot::generate::capunaman::Baseline;
+use picot::ir::verify::verify;
+use picot::metrics::{Measure, Readability, Stats};
+use picot::shape::Shape;
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::time::Duration;
+
+/// What is known of one run of an algorithm.
+pub(crate) struct Measured {
+    pub(crate) measure: Measure,
+    pub(crate) rounds: u64,
+    pub(crate) readability: Option<Readability>,
+    /// The first round that cannot be worked, with 0 for one that is not known.
+    pub(crate) unworkable: Option<u64>,
+}
+
+pub(crate) fn run(arguments: &Arguments, report: Report) -> Result<Status, Failure> {
+    let reader = reader_of(&arguments.input, arguments.reading.from.as_deref())?;
+    let routed = route(&arguments.reading, &[])?;
+    let stdin = files::stdin_if_named([&arguments.input].into_iter())?;
+    let bar = Bar::new(1, report.quiet());
+    let watch = Watch::new(Some(&bar));
+    let mut sources = Sources::new(&files::load);
+    let mut sink = Sink::with_observer(&watch);
+    let source = files::open(&mut sources, &arguments.input, &stdin)?;
+    let input = picot::read(&source, reader, &routed.options, &mut sources, &mut sink);
+    let measured = match &input {
+        Some(Input::Shape(shape)) => {
+            measure(shape, arguments.algorithm, &routed.options, &mut sink).map(|measured| (shape, measured))
+        }
+        Some(Input::Program(_)) => {
+            return Err(Failure::usage(format!("`{}` is a pattern, not a shape", arguments.input))
+                .help("what is measured is how stitches lie on a shape"));
+        }
+        None => None,
+    };
+    bar.clear();
+    report::print(&report.render(&sources, sink.diagnostics()));
+    let Some((shape, measured)) = measured else {
+        return Ok(Status::InputErrors);
+    };
+    let times = watch.times();
+    if arguments.json {
+        return print_json(&to_json(shape, arguments.algorithm, &measured, &times)?);
+    }
+    print(table(shape, arguments.algorithm, &measured, &times).as_bytes())
+}
+
+/// Lays stitches on a shape and measures them.
+pub(crate) fn measure(
+    shape: &Shape,
+    algorithm: Algorithm,
+    options: &picot::Options,
+    sink: &mut Sink<'_>,
+) -> Option<Measured> {
+    match algorithm {
+        Algorithm::Picot => {
+            let program = picot::program(shape, options, sink)?;
+            sink.stage("verify");
+            let mut findings = Sink::new();
+            let workable = verify(&program, &mut findings).is_some();
+            let round = findings.diagnostics().iter().find_map(|finding| finding.place.as_ref()?.round);
+            for finding in findings.take() {
+                sink.push(finding);
+            }
+            sink.stage("measure");
+            Some(Measured {
+                measure: picot::measure(shape, &program),
+                rounds: rounds(&program),
+                readability: Some(Readability::of(&program.pattern, &program.graphs)),
+                unworkable: (!workable).then(|| u64::from(round.unwrap_or(0))),
+            })
+        }
+        Algorithm::Capunaman => {
+            let nets = picot::baseline(shape, sink)?;
+            sink.stage("measure");
+            Some(Measured {
+                measure: picot::measure_baseline(shape, &nets),
+                rounds: nets.iter().map(|net| net.rows.len().saturating_sub(2) as u64).sum(),
+                readability: None,
+                unworkable: nets.iter().find_map(Baseline::unworkable_row).map(|row| row as u64),
+            })
+        }
+    }
+}
+
+pub(crate) fn name(algorithm: Algorithm) -> &'static str {
+    match algorithm {
+        Algorithm::Picot => "picot",
+        Algorithm::Capunaman => "capunaman",
+    }
+}
+
+fn to_json(
+    shape: &Shape,
+    algorithm: Algorithm,
+    measured: &Measured,
+    times: &[(&'static str, Duration)],
+) -> Result<Value, Failure> {
+    let mut value = json!({
+        "schema": "picot.measure/1",
+        "name": shape.name,
+        "algorithm": name(algorithm),
+        "version": env!("CARGO_PKG_VERSION"),
+        "gauge": { "width": shape.gauge.width, "height": shape.gauge.height, "estimated": shape.gauge.estimated() },
+        "time_ms": times.iter().map(|(stage, time)| ((*stage).to_owned(), milliseconds(*time))).collect::<serde_json::Map<_, _>>(),
+    });
+    let facts = facts(measured)?;
+    if let (Value::Object(value), Value::Object(facts)) = (&mut value, facts) {
+        value.extend(facts);
+    }
+    Ok(value)
+}
+
+/// Counts and metrics as JSON.
+pub(crate) fn facts(measured: &Measured) -> Result<Value, Failure> {
+    let wrong = |error| Failure::file("the measures", std::io::Error::other::<serde_json::Error>(error));
+    let mut value = serde_json::to_value(&measured.measure).map_err(wrong)?;
+    value["rounds"] = measured.rounds.into();
+    value["workable"] = measured.unworkable.is_none().into();
+    if let Some(round) = measured.unworkable {
+        value["unworkable_round"] = round.into();
+    }
+    if let Some(readability) = &measured.readability {
+        value["readability"] = serde_json::to_value(readability).map_err(wrong)?;
+    }
+    Ok(value)
+}
+
+pub(crate) fn milliseconds(time: Duration) -> Value {
+    json!((time.as_secs_f64() * 1e6).round() / 1e3)
+}
+
+fn table(
+    shape: &Shape,
+    algorithm: Algorithm,
+    measured: &Measured,
+    times: &[(&'static str, Duration)],
+) -> String {
+    let Measured { measure, .. } = measured;
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "{} by {}: {} rounds, {} stitches, {} short rows, {} increases, {} decreases",
+        shape.name,
+        name(algorithm),
+        measured.rounds,
+        measure.stitches,
+        measure.short_rows,
+        measure.increases,
+        measure.decreases
+    );
+    let _ = writeln!(
+        text,
+        "\n{:<28}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}",
+        "percent", "mean", "sd", "|mean|", "rms", "p95", "max", "count"
+    );
+    let mut line = |name: &str, stats: &Stats| {
+        if stats.count > 0 {
+            let _ = write!(text, "{name:<28}{:>+8.2}", 100.0 * stats.mean);
+            for value in [stats.sd, stats.mean_abs, stats.rms, stats.p95, stats.max] {
+                let _ = write!(text, "{:>8.2}", 100.0 * value);
+            }
+            let _ = writeln!(text, "{:>8}", stats.count);
+        }
+    };
+    let (length, skew) = (&measure.length_error, &measure.skew);
+    line("length error", &length.chord);
+    line("  along the yarn", &length.course.chord);
+    line("  from row to row", &length.wale.chord);
+    line("  steps at short rows", &length.step.chord);
+    line("length error on the surface", &length.surface);
+    line("length error as in the paper", &length.paper.all);
+    line("skew", &skew.all);
+    line("  stitch beside stitch", &skew.quad);
+    line("  increases", &skew.inc);
+    line("  decreases", &skew.dec);
+    line("  steps at short rows", &skew.step);
+    line("  turns", &skew.turn);
+    line("skew as in the paper", &skew.paper);
+    let _ = writeln!(
+        text,
+        "\ncoverage  {:.1} % by area, {:.1} % by count",
+        100.0 * measure.coverage,
+        100.0 * measure.coverage_by_count
+    );
+    let _ = writeln!(
+        text,
+        "level     {:+.2} rows missing at the end, spread {:.2}",
+        measure.level.missing, measure.level.spread
+    );
+    if let Some(read) = &measured.readability {
+        let _ = writeln!(
+            text,
+            "reading   {:.2} words a stitch, at most {} a round, longest run {}, {:.0} % of increases stacked",
+            read.words_per_stitch,
+            read.most_words,
+            read.longest_run,
+            100.0 * read.stacked_increases
+        );
+    }
+    let workable = match measured.unworkable {
+        None => "yes".to_owned(),
+        Some(0) => "no".to_owned(),
+        Some(round) => format!("no, round {round}"),
+    };
+    let _ = writeln!(text, "workable  {workable}");
+    if measure.inverted_tiles + measure.crossings > 0 {
+        let _ = writeln!(
+            text,
+            "flaws     {} inverted tiles, {} crossing wales",
+            measure.inverted_tiles, measure.crossings
+        );
+    }
+    let stages: Vec<String> =
+        times.iter().map(|(stage, time)| format!("{stage} {:.1}", time.as_secs_f64() * 1e3)).collect();
+    let _ = writeln!(text, "time, ms  {}", stages.join(", "));
+    text
+}
