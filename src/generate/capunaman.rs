@@ -120,6 +120,8 @@ fn knots(surface: &dyn ParametricSurface, height: f64) -> Vec<f64> {
     let mut knots = vec![0.0];
     let mut u = 0.0;
     let mut step = 1e-3;
+    // A whole number of rows must not lose its last one to rounding.
+    let (height, end) = (height * (1.0 - 1e-12), 1.0 + 1e-12);
     while knots.len() < MAX_ROW as usize {
         let row: Vec<_> = (0..AROUND).map(|j| surface.point(u, f64::from(j) / f64::from(AROUND))).collect();
         let distance = |u: f64| {
@@ -128,7 +130,7 @@ fn knots(surface: &dyn ParametricSurface, height: f64) -> Vec<f64> {
         };
         let (mut low, mut high) = (u, u + step);
         while distance(high) < height {
-            if high >= 1.0 {
+            if high >= end {
                 return knots;
             }
             (low, high) = (high, high + step);
@@ -138,11 +140,11 @@ fn knots(surface: &dyn ParametricSurface, height: f64) -> Vec<f64> {
             let middle = 0.5 * (low + high);
             if distance(middle) < height { low = middle } else { high = middle }
         }
-        if high > 1.0 {
+        if high > end {
             return knots;
         }
         step = 0.5 * (high - u);
-        u = high;
+        u = high.min(1.0);
         knots.push(u);
     }
     knots
