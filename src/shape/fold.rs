@@ -40,7 +40,7 @@ fn tight(chain: &Chain, frames: &Frames, stack: &Stack, breaks: &[f64]) -> Resul
         let width = pair[1] - pair[0];
         for k in 0..=steps {
             let w = pair[0] + width * (k as f64 / steps as f64).clamp(1e-9, 1.0 - 1e-9);
-            let ratio = ratio(chain, frames, stack, w, 24);
+            let ratio = ratio(chain, frames, stack, w, 16);
             if ratio > worst || ratio.is_nan() {
                 (worst, at, reach) = (ratio, w, width / steps as f64);
             }
@@ -53,7 +53,7 @@ fn tight(chain: &Chain, frames: &Frames, stack: &Stack, breaks: &[f64]) -> Resul
     let (mut low, mut high) = ((at - reach).max(0.0), (at + reach).min(1.0));
     for _ in 0..16 {
         let (a, b) = (high - 0.618_034 * (high - low), low + 0.618_034 * (high - low));
-        let (at_a, at_b) = (ratio(chain, frames, stack, a, 96), ratio(chain, frames, stack, b, 96));
+        let (at_a, at_b) = (ratio(chain, frames, stack, a, 48), ratio(chain, frames, stack, b, 48));
         let better = if at_a > at_b { (at_a, a) } else { (at_b, b) };
         if better.0 > worst {
             (worst, at) = better;

@@ -158,7 +158,7 @@ impl Stack {
                 0.5 * (a * a + b * b) + x * x + y * y
             }
             Kind::Loops(stack) => {
-                (0..8).map(|k| stack.eval(w, f64::from(k) / 8.0).du.length_squared()).sum::<f64>() / 8.0
+                (0..4).map(|k| stack.eval(w, f64::from(k) / 4.0).du.length_squared()).sum::<f64>() / 4.0
             }
         }
     }

@@ -52,7 +52,7 @@ fn hermite(from: f64, rise: f64, start: f64, end: f64) -> [f64; 4] {
     [from, start, 3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise]
 }
 
-/// Slopes at the places by the limiter M3-A of Huynh (1993): third order even at a smooth extremum, so that a
+/// Slopes at the places; a `positive` quantity is the square of a size. By the limiter M3-A of Huynh (1993): third order even at a smooth extremum, so that a
 /// parabola is kept exactly, and monotone where the values are.
 pub(super) fn slopes(places: &[f64], values: &[f64], positive: bool) -> Vec<f64> {
     let count = places.len().min(values.len());
@@ -61,6 +61,12 @@ pub(super) fn slopes(places: &[f64], values: &[f64], positive: bool) -> Vec<f64>
     }
     let secant = |i: usize| (values[i + 1] - values[i]) / (places[i + 1] - places[i]);
     if count == 2 {
+        // The square of a straight line, where it is a square and not of a point.
+        if positive && values[0] > 0.0 && values[1] > 0.0 {
+            let roots = [values[0].sqrt(), values[1].sqrt()];
+            let slope = 2.0 * (roots[1] - roots[0]) / (places[1] - places[0]);
+            return roots.map(|root| root * slope).to_vec();
+        }
         return vec![secant(0); 2];
     }
     // Second divided difference around place i; beyond the ends the nearest one.
@@ -77,6 +83,13 @@ pub(super) fn slopes(places: &[f64], values: &[f64], positive: bool) -> Vec<f64>
         let wide = minmod(left, right);
         let size = (0.5 * (left + right)).abs().min(limit.max(1.5 * wide.abs()));
         slopes[i] = if wide == 0.0 { 0.0 } else { size.copysign(wide) };
+        // Nothing beyond the outermost values says that they belong to a smooth extremum.
+        if i == 1 {
+            slopes[i] = minmod(slopes[i], 3.0 * secant(0));
+        }
+        if i == count - 2 {
+            slopes[i] = minmod(slopes[i], 3.0 * secant(i));
+        }
     }
     let end = |secant: f64, slope: f64| minmod(slope, 3.0 * secant);
     slopes[0] = end(secant(0), secant(0) - second(1) * (places[1] - places[0]));
@@ -105,5 +118,59 @@ fn minmod(a: f64, b: f64) -> f64 {
         a
     } else {
         b
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(cubics: &[Cubic], x: f64) -> f64 {
+        let cubic = cubics.iter().rev().find(|cubic| cubic.start <= x).unwrap();
+        let t = (x - cubic.start) * cubic.inverse;
+        let [a, b, c, d] = cubic.coefficients;
+        a + t * (b + t * (c + t * d))
+    }
+
+    #[test]
+    fn rising_values_give_a_rising_curve() {
+        let mut seed = 1_u32;
+        let mut random = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(seed >> 8) / f64::from(1 << 24)
+        };
+        for round in 0..2000 {
+            let (mut places, mut values) = (vec![0.0], vec![random() + 0.01]);
+            for _ in 0..2 + round % 9 {
+                places.push(places[places.len() - 1] + 0.01 + random());
+                let step = random();
+                // Cliffs and flats too.
+                values.push(values[values.len() - 1] + if step < 0.3 { 0.0 } else { step.powi(6) * 100.0 });
+            }
+            let last = places[places.len() - 1];
+            for place in &mut places {
+                *place /= last;
+            }
+            let cubics = cubics(&places, &values, true, true);
+            let mut before = values[0];
+            for k in 0..=500 {
+                let now = value(&cubics, f64::from(k) / 500.0);
+                assert!(now >= before - 1e-9 * values[values.len() - 1], "{places:?} {values:?} {k}");
+                before = now;
+            }
+        }
+    }
+
+    #[test]
+    fn a_parabola_and_a_cone_are_kept() {
+        let places = [0.0, 0.1, 0.35, 0.5, 0.9, 1.0];
+        let values = places.map(|x| x * (1.0 - x));
+        let curve = cubics(&places, &values, true, true);
+        let cone = cubics(&[0.0, 1.0], &[4.0, 81.0], true, true);
+        for k in 0..=100 {
+            let x = f64::from(k) / 100.0;
+            assert!((value(&curve, x) - x * (1.0 - x)).abs() < 1e-12, "{x}");
+            assert!((value(&cone, x) - (2.0 + 7.0 * x) * (2.0 + 7.0 * x)).abs() < 1e-12, "{x}");
+        }
     }
 }

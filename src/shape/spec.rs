@@ -50,8 +50,9 @@ pub enum Interpolation {
     /// Every number of the profile is linear in the curve parameter.
     #[default]
     Linear,
-    /// Smooth, without overshoot. Sizes are interpolated by their squares, so that the tube is round, not
-    /// pointed, where it shrinks to nothing at a closed end: sections of a sphere give a sphere.
+    /// Smooth and without ripples: where the sections grow, so does the tube. Sizes are interpolated by their squares,
+    /// so that the tube is round, not pointed, where it shrinks to nothing at a closed end: sections of a sphere, with
+    /// size 0 at both ends, give a sphere, and those of a cone a cone.
     Smooth,
 }
 

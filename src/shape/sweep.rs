@@ -7,6 +7,7 @@ use super::profile::Stack;
 use super::spec::{Fault, TubeSpec};
 use super::{End, Jet, ParametricSurface, fold};
 use glam::DVec3;
+use std::fmt;
 use std::ops::Range;
 
 /// Segments a curve may have.
@@ -22,7 +23,7 @@ const TIP: f64 = 1e-5;
 /// segment with open ends is the curve parameter; with several segments or closed ends u follows the
 /// length of the meridian, so that its speed is even, whatever the speeds of the segments are. Beyond an open end
 /// the surface goes on straight, beyond a pole on the other side.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Sweep {
     chain: Chain,
     frames: Frames,
@@ -30,6 +31,19 @@ pub struct Sweep {
     meridian: Meridian,
     start: Tip,
     end: Tip,
+}
+
+impl fmt::Debug for Sweep {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // The tables would fill pages.
+        f.debug_struct("Sweep")
+            .field("segments", &self.chain.segments())
+            .field("length", &self.chain.length())
+            .field("tube", &self.tube_range())
+            .field("start", &self.start)
+            .field("end", &self.end)
+            .finish_non_exhaustive()
+    }
 }
 
 /// How the surface goes on at an end.
