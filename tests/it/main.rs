@@ -5,6 +5,7 @@ mod baseline;
 mod loops;
 mod passes;
 mod programs;
+mod properties;
 mod render;
 mod surfaces;
 mod trace;

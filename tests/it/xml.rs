@@ -47,6 +47,16 @@ fn write(program: &Program) -> Vec<u8> {
     try_write(program, "").expect("writable")
 }
 
+/// Why a program does not come back from XML as it was; `None` when it does.
+pub(crate) fn loses(program: &Program) -> Option<String> {
+    let bytes = write(program);
+    let (back, found) = read(&bytes);
+    let Some(back) = back else { return Some(listing(&bytes, &found)) };
+    let same =
+        write(&back) == bytes && programs::without_places(back) == programs::without_places(program.clone());
+    (!same).then(|| "another program came back".to_owned())
+}
+
 /// A listing of diagnostics: code, line and column, message, help.
 fn listing(text: &[u8], diagnostics: &[Diagnostic]) -> String {
     let mut sources = Sources::new(&no_files);
