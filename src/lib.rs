@@ -17,7 +17,7 @@ pub mod passes;
 pub mod settings;
 pub mod shape;
 
-use diag::{Sink, Source, Sources};
+use diag::{Code, Diagnostic, Sink, Source, Sources};
 use frontend::{Input, Reader};
 use generate::capunaman::Baseline;
 use ir::{Finish, Gauge, Pattern, Program};
@@ -44,6 +44,14 @@ pub fn compile(
     match read(source, reader, options, sources, sink)? {
         Input::Shape(shape) => program(&shape, options, sink),
         Input::Program(program) => Some(*program),
+        Input::Code(_) => {
+            sink.push(
+                Diagnostic::new(Code::NoPattern, "machine code holds no pattern")
+                    .at(source.span(0..0), "")
+                    .help("it can be checked, and converted between knitout and kcode"),
+            );
+            None
+        }
     }
 }
 
@@ -61,6 +69,7 @@ pub fn read(
     match &mut input {
         Input::Shape(shape) => shape.gauge = options.gauge.unwrap_or(shape.gauge),
         Input::Program(program) => program.gauge = options.gauge.or(program.gauge),
+        Input::Code(_) => {}
     }
     Some(input)
 }

@@ -1,5 +1,7 @@
 //! Printers: from a verified program to bytes. A backend is one file and one line of [`TARGETS`].
 
+pub mod knitout;
+
 use crate::diag::Sink;
 use crate::ir::verify::Verified;
 use crate::settings;

@@ -39,8 +39,9 @@ pub(crate) fn run(arguments: &Arguments, report: Report) -> Result<Status, Failu
         Some(Input::Shape(shape)) => {
             measure(shape, arguments.algorithm, &routed.options, &mut sink).map(|measured| (shape, measured))
         }
-        Some(Input::Program(_)) => {
-            return Err(Failure::usage(format!("`{}` is a pattern, not a shape", arguments.input))
+        Some(other @ (Input::Program(_) | Input::Code(_))) => {
+            let what = if matches!(other, Input::Code(_)) { "machine code" } else { "a pattern" };
+            return Err(Failure::usage(format!("`{}` is {what}, not a shape", arguments.input))
                 .help("what is measured is how stitches lie on a shape"));
         }
         None => None,

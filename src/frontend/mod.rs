@@ -1,7 +1,10 @@
 //! Readers: from bytes to a value, with spans and diagnostics. A reader is one file and one line of [`READERS`].
 
+pub mod knitout;
+
 use crate::diag::{Sink, Source, Sources};
 use crate::ir::Program;
+use crate::ir::machine;
 use crate::shape::Shape;
 
 pub mod xml;
@@ -13,6 +16,8 @@ pub enum Input {
     Shape(Box<Shape>),
     /// A pattern that is already one.
     Program(Box<Program>),
+    /// Machine code, which is checked and converted only.
+    Code(Box<machine::Code>),
 }
 
 /// One readable format.
@@ -29,7 +34,7 @@ pub struct Reader {
 }
 
 /// Every reader.
-pub static READERS: &[Reader] = &[xml::READER];
+pub static READERS: &[Reader] = &[knitout::READER, xml::READER];
 
 /// The reader with this name.
 pub fn reader(name: &str) -> Option<&'static Reader> {

@@ -15,6 +15,7 @@
 
 pub mod exchange;
 pub mod graph;
+pub mod machine;
 pub mod pattern;
 pub mod stitch;
 pub mod verify;

@@ -2,6 +2,7 @@
 
 mod arbitrary;
 mod baseline;
+mod knitout;
 mod loops;
 mod passes;
 mod programs;

@@ -27,7 +27,7 @@ fn read(bytes: &[u8]) -> (Option<Program>, Vec<Diagnostic>) {
     let input = (reader.read)(&source, &mut sources, &mut sink);
     let program = input.map(|input| match input {
         Input::Program(program) => *program,
-        other @ Input::Shape(_) => panic!("XML is a program, not {other:?}"),
+        other @ (Input::Shape(_) | Input::Code(_)) => panic!("XML is a program, not {other:?}"),
     });
     assert!(program.is_some() != sink.has_errors(), "a program or an error, never both nor neither");
     (program, sink.take())

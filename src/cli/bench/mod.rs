@@ -146,7 +146,7 @@ fn shape(printed: &Printed, options: &picot::Options, sink: &mut Sink<'_>) -> Op
     let source = sources.add(printed.name, printed.source.as_bytes().to_vec()).ok()?;
     match picot::read(&source, reader("shape")?, options, &mut sources, sink)? {
         Input::Shape(shape) => Some(shape),
-        Input::Program(_) => None,
+        Input::Program(_) | Input::Code(_) => None,
     }
 }
 
