@@ -307,9 +307,13 @@ impl<'o> Sink<'o> {
     }
 }
 
-/// The candidate nearest to `word` in spelling: distance 1, or 2 from six letters on.
+/// The candidate nearest to `word` in spelling: distance 1, or 2 from six letters on; none for a single letter.
 pub fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
-    let limit = if word.chars().count() >= 6 { 2 } else { 1 };
+    let limit = match word.chars().count() {
+        0 | 1 => return None,
+        2..6 => 1,
+        _ => 2,
+    };
     candidates
         .into_iter()
         .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))

@@ -1,6 +1,7 @@
 //! Readers: from bytes to a value, with spans and diagnostics. A reader is one file and one line of [`READERS`].
 
 pub mod knitout;
+mod shape;
 
 use crate::diag::{Sink, Source, Sources};
 use crate::ir::Program;
@@ -34,7 +35,7 @@ pub struct Reader {
 }
 
 /// Every reader.
-pub static READERS: &[Reader] = &[knitout::READER, xml::READER];
+pub static READERS: &[Reader] = &[shape::READER, knitout::READER, xml::READER];
 
 /// The reader with this name.
 pub fn reader(name: &str) -> Option<&'static Reader> {

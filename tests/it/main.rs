@@ -8,6 +8,7 @@ mod passes;
 mod programs;
 mod properties;
 mod render;
+mod shape_files;
 mod surfaces;
 mod trace;
 mod verify;

@@ -23,6 +23,11 @@ pub fn terminal(diagnostic: &Diagnostic, positions: &Positions<'_>, color: bool)
     renderer.term_width(WIDTH).render(&report)
 }
 
+/// Text of several lines.
+fn lines(text: &str) -> String {
+    text.lines().map(printable).collect::<Vec<_>>().join("\n")
+}
+
 fn level(severity: Severity) -> Level<'static> {
     match severity {
         Severity::Error => Level::ERROR,
@@ -66,7 +71,7 @@ fn body<'a>(title: Title<'a>, diagnostic: &Diagnostic, positions: &Positions<'_>
         group = group.element(Level::NOTE.message(format!("in {}", printable(&place(at)))));
     }
     if let Some(help) = &diagnostic.help {
-        group = group.element(Level::HELP.message(printable(help)));
+        group = group.element(Level::HELP.message(lines(help)));
     }
     group
 }
