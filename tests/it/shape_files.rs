@@ -4,6 +4,7 @@ use picot::diag::position::Positions;
 use picot::diag::render::{short, terminal};
 use picot::diag::{Code, Diagnostic, Sink, Sources};
 use picot::frontend::{Input, reader};
+use picot::math;
 use picot::shape::Shape;
 use proptest::prelude::*;
 use std::io;
@@ -61,10 +62,54 @@ fn stem(path: &Path) -> &str {
 #[test]
 fn every_shipped_shape_reads_without_a_remark() {
     let files = toml_files("shapes");
-    assert!(files.len() >= 3, "{}", files.len());
+    assert!(files.len() >= 20, "{}", files.len());
     for path in files {
         let (shape, found, text) = read(stem(&path), &bytes(&path));
         assert!(shape.is_some() && found.is_empty(), "{}\n{text}", path.display());
+    }
+}
+
+/// The formulas of the two stand-ins, in the words of their files.
+#[test]
+fn the_stand_ins_of_the_paper_follow_their_formulas() {
+    use std::f64::consts::{PI, TAU};
+    type Radius = fn(f64, f64) -> f64;
+    let a: Radius = |u, v| {
+        let (dents, waves) = (math::sin(TAU * v + 4.0 * u) * math::sin(5.0 * u), math::cos(6.0 * u));
+        16.0 * (1.0 + 0.10 * dents + 0.06 * waves)
+    };
+    let b: Radius = |u, v| {
+        let (belly, side) = (math::sin(PI * u).powi(2), (0.5 + 0.5 * math::cos(TAU * v)).powi(2));
+        6.0 + belly * (9.0 + 8.0 * side)
+    };
+    for (name, length, radius) in [("a", 122.0, a), ("b", 75.0, b)] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("shapes/paper/{name}.toml"));
+        let shape = read(name, &bytes(&path)).0.expect("a shape");
+        let mut worst = 0.0_f64;
+        for i in 0..=97 {
+            for k in 0..101 {
+                let point = shape.tubes[0].surface.point(f64::from(i) / 97.0, f64::from(k) / 101.0);
+                let v = math::atan2(point.y, point.x) / TAU;
+                let expected = radius(point.z / length, v);
+                worst = worst.max((point.x.hypot(point.y) / expected - 1.0).abs());
+            }
+        }
+        assert!(worst < 0.002, "{name}: {worst}");
+    }
+}
+
+/// Sections of a sphere, smoothly joined, are a sphere.
+#[test]
+fn the_ball_is_a_ball() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("shapes/ball.toml");
+    let shape = read("ball", &bytes(&path)).0.expect("a shape");
+    let radius = 36.0 * 6.0 / (2.0 * std::f64::consts::PI);
+    let center = glam::DVec3::new(0.0, 0.0, radius);
+    for i in 0..=50 {
+        for k in 0..12 {
+            let point = shape.tubes[0].surface.point(f64::from(i) / 50.0, f64::from(k) / 12.0);
+            assert!((point.distance(center) / radius - 1.0).abs() < 0.002, "{i} {k} {point}");
+        }
     }
 }
 
