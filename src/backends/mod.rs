@@ -1,14 +1,15 @@
 //! Printers: from a verified program to bytes. A backend is one file and one line of [`TARGETS`].
 
+pub mod crochet;
+pub mod json;
 pub mod knitout;
+pub mod xml;
 
 use crate::diag::Sink;
 use crate::ir::verify::Verified;
 use crate::settings;
 use serde::de::DeserializeOwned;
 use std::io;
-
-pub mod xml;
 
 /// A configured backend. The value of a backend is its options.
 pub trait Backend {
@@ -88,7 +89,8 @@ impl Target {
 }
 
 /// Every target.
-pub static TARGETS: &[Target] = &[Target::of::<xml::Xml>()];
+pub static TARGETS: &[Target] =
+    &[Target::of::<crochet::Crochet>(), Target::of::<json::Json>(), Target::of::<xml::Xml>()];
 
 /// The target with this name.
 pub fn target(name: &str) -> Option<&'static Target> {

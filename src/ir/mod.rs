@@ -13,6 +13,7 @@
 //!   first; after [`Direction::Forward`] the hook goes on in working direction, over the loops of the back pass first.
 //!   A turn itself neither works nor makes a loop.
 
+pub mod dump;
 pub mod exchange;
 pub mod graph;
 pub mod machine;

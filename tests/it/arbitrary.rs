@@ -64,7 +64,7 @@ pub(crate) fn rows(tape: &mut Tape<'_>, shape: Shape) -> Vec<Vec<Step>> {
             if ahead == 0 {
                 break;
             }
-            if shape.early && last && !row.is_empty() && tape.below(32) == 31 {
+            if shape.early && last && matches!(row.last(), Some(Step::Work(_))) && tape.below(32) == 31 {
                 row.push(Step::Leave { loops: ahead as u32 });
                 break;
             }

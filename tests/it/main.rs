@@ -12,4 +12,5 @@ mod shape_files;
 mod surfaces;
 mod trace;
 mod verify;
+mod written;
 mod xml;

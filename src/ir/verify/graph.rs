@@ -51,6 +51,9 @@ fn follow(part: &Part, graph: &Graph) -> Result<(), (String, Option<u32>)> {
     if tiles.next().is_some() {
         return Err((format!("the graph goes on after the pattern's {seen} stitches"), None));
     }
+    if graph.tiles.last().is_some_and(|tile| tile.stitch.is_none()) {
+        return Err(("the graph ends with a turn, which leads nowhere".to_owned(), None));
+    }
     if loops.next as usize != graph.nodes.len() {
         return Err((
             format!("the pattern makes {} loops, the graph has {}", loops.next, graph.nodes.len()),

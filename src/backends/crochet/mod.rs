@@ -1,0 +1,94 @@
+//! The written crochet pattern: what a maker works from, and what Picot's own reader reads back.
+
+mod header;
+mod rows;
+pub(super) mod words;
+
+use super::{Backend, Error, Format};
+use crate::diag::Sink;
+use crate::ir::verify::Verified;
+use serde::Deserialize;
+use std::io;
+
+/// Options of the target `crochet`.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Crochet {
+    /// The vocabulary; US by default.
+    pub terms: Terms,
+    /// How much is said.
+    pub style: Style,
+    /// How changes of direction are marked.
+    pub arrows: Arrows,
+    /// Where remarks are wrapped, in characters; rounds stay in one line.
+    pub line_width: u16,
+}
+
+impl Default for Crochet {
+    fn default() -> Self {
+        Self { terms: Terms::Us, style: Style::Maker, arrows: Arrows::Unicode, line_width: 80 }
+    }
+}
+
+/// Crochet vocabulary. The same word means different stitches: US `sc` is UK `dc`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Terms {
+    /// American.
+    #[default]
+    Us,
+    /// British.
+    Uk,
+}
+
+impl Terms {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Us => "us",
+            Self::Uk => "uk",
+        }
+    }
+}
+
+/// How much is said.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Style {
+    /// A whole pattern: size, gauge, materials, notes, folded rounds with counts, finishing.
+    #[default]
+    Maker,
+    /// The plain form of the paper: a line a row, equal neighbors counted, arrows; nothing is folded.
+    Paper,
+}
+
+/// How changes of direction are marked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Arrows {
+    /// `←` and `→`.
+    #[default]
+    Unicode,
+    /// `<-` and `->`.
+    Ascii,
+    /// `turn`.
+    Words,
+}
+
+impl Backend for Crochet {
+    fn emit(&self, program: &Verified<'_>, out: &mut dyn io::Write, _: &mut Sink<'_>) -> Result<(), Error> {
+        let mut out = io::BufWriter::new(out);
+        let mut text = rows::Text::new(self, &mut out);
+        header::write(self, program, &mut text)?;
+        for index in 0..program.pattern.parts.len() {
+            rows::part(self, program, index, &mut text)?;
+        }
+        io::Write::flush(&mut out)?;
+        Ok(())
+    }
+}
+
+impl Format for Crochet {
+    const NAME: &'static str = "crochet";
+    const EXTENSION: &'static str = "txt";
+    const ABOUT: &'static str = "written pattern to crochet from, in US or UK terms";
+}
