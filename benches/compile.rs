@@ -1,0 +1,62 @@
+//! Whole compiles, from the text of a shape to the text of a pattern: the paper's shapes at its stitch sizes, and ever
+//! finer stitches on one shape to show that the cost of a stitch stays the same.
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use picot::backends::target;
+use picot::diag::{Sink, Sources};
+use picot::frontend::reader;
+use picot::ir::Gauge;
+use picot::ir::verify::verify;
+use std::hint::black_box;
+
+const SHAPES: [(&str, &str); 4] = [
+    ("a", include_str!("../shapes/paper/a.toml")),
+    ("b", include_str!("../shapes/paper/b.toml")),
+    ("c", include_str!("../shapes/paper/c.toml")),
+    ("d", include_str!("../shapes/paper/d.toml")),
+];
+
+/// Compiles to text; the number of stitches.
+fn compile(text: &str, size: f64) -> u64 {
+    let loader = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+    let mut sources = Sources::new(&loader);
+    let mut sink = Sink::new();
+    let options = picot::Options { gauge: Some(Gauge::new(size, size)), ..picot::Options::default() };
+    let source = sources.add("shape", text.as_bytes().to_vec()).expect("small");
+    let reader = reader("shape").expect("listed");
+    let program = picot::compile(&source, reader, &options, &mut sources, &mut sink).expect("compiles");
+    let verified = verify(&program, &mut sink).expect("verifies");
+    let backend = target("crochet").expect("listed").configure(toml::Table::new()).expect("defaults");
+    let mut out = Vec::new();
+    backend.emit(&verified, &mut out, &mut sink).expect("prints");
+    black_box(out);
+    verified.facts().stitches(&verified)
+}
+
+fn paper(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("paper");
+    for (name, text) in SHAPES {
+        for size in [2.5, 2.0, 1.5] {
+            group.throughput(Throughput::Elements(compile(text, size)));
+            let id = BenchmarkId::new(name, size);
+            group.bench_with_input(id, &size, |bencher, size| bencher.iter(|| compile(text, *size)));
+        }
+    }
+    group.finish();
+}
+
+fn scale(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("scale");
+    group.sample_size(10);
+    for size in [2.5, 1.0, 0.5, 0.25] {
+        let (_, text) = SHAPES[3];
+        group.throughput(Throughput::Elements(compile(text, size)));
+        group.bench_with_input(BenchmarkId::new("d", size), &size, |bencher, size| {
+            bencher.iter(|| compile(text, *size));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, paper, scale);
+criterion_main!(benches);
