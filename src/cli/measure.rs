@@ -1,7 +1,8 @@
 //! `picot measure`: how close the stitches of an input come to its shape.
 
 use super::args::{Algorithm, Measure as Arguments};
-use super::build::{reader_of, rounds};
+use super::build::rounds;
+use super::plan::reader_of;
 use super::progress::{Bar, Watch};
 use super::report::{self, Report};
 use super::route::route;

@@ -9,6 +9,7 @@ mod files;
 mod list;
 mod man;
 mod measure;
+mod plan;
 mod progress;
 mod report;
 mod route;

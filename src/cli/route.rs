@@ -43,7 +43,13 @@ pub(crate) fn route(reading: &Reading, targets: &[&'static Target]) -> Result<Ro
     for (target, table) in targets.iter().zip(&tables) {
         target.configure(table.clone()).map_err(|error| wrong_value(target.name, &error))?;
     }
-    let generate = general.try_into().map_err(|error| wrong_value("the generator", &error))?;
+    let generate: generate::Options =
+        general.try_into().map_err(|error| wrong_value("the generator", &error))?;
+    if let Some((key, right)) = generate.fault() {
+        return Err(
+            Failure::usage(format!("--set {key}: out of range")).help(format!("give it a value {right}"))
+        );
+    }
     Ok(Routed { options: picot::Options { gauge: reading.gauge, generate }, tables })
 }
 

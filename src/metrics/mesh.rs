@@ -2,6 +2,7 @@
 
 use super::walk::walk;
 use crate::ir::{Graph, Node, NodeId};
+use glam::DVec3;
 
 /// An edge between two loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,5 +112,14 @@ impl<'g> Mesh<'g> {
             }
         }
         self.open = (0..self.nodes.len() as NodeId).filter(|id| !worked[*id as usize]).collect();
+    }
+
+    pub(super) fn node(&self, id: NodeId) -> Option<&Node> {
+        self.nodes.get(id as usize)
+    }
+
+    pub(super) fn corners(&self, tile: &Tile) -> Option<[DVec3; 4]> {
+        let [a, b, c, d] = tile.corners.map(|id| self.node(id).map(|node| node.position));
+        Some([a?, b?, c?, d?])
     }
 }

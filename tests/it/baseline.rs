@@ -8,7 +8,7 @@ use picot::metrics::{Mesh, Sampler, measure};
 use picot::shape::{Bezier, End, Interpolation, Profile, Section, Sweep, Tube, TubeSpec};
 
 /// The two published shapes, in mm: a Bézier curve, and a circle whose radius is linear in the curve parameter.
-fn shape(name: &str) -> Tube {
+pub(crate) fn shape(name: &str) -> Tube {
     let scale = 1000.0 / 3.0;
     let (curve, radii) = match name {
         "c" => (

@@ -2,14 +2,19 @@
 
 mod arbitrary;
 mod baseline;
+#[cfg(feature = "cli")]
+mod cli;
 mod knitout;
 mod loops;
+mod metrics;
 mod passes;
 mod programs;
 mod properties;
 mod render;
 mod shape_files;
+mod snapshots;
 mod surfaces;
+mod tidy;
 mod trace;
 mod verify;
 mod written;
