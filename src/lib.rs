@@ -4,6 +4,38 @@
 //! shape's surface, one graph a tube; [`lower`] follows the yarn through the graph and writes down what the hook does;
 //! [`passes`] fold that for people to read; [`ir::verify`] works the pattern loop by loop; and a [backend](backends)
 //! prints what came through. Faults of the input are [diagnostics](diag) in a sink, never panics.
+//!
+//! ```
+//! use picot::diag::{Sink, Sources};
+//! use picot::{Options, backends, frontend, ir::verify::verify};
+//!
+//! let shape = r#"
+//!     name = "cuff"
+//!     unit = "cm"
+//!     [gauge]
+//!     stitch = { width = 0.5, height = 0.5 }
+//!     [trunk]
+//!     curve = [[0, 0, 0], [0, 0, 5]]
+//!     section = [{ at = 0, circle = 3.2 }]
+//! "#;
+//!
+//! // The core does no IO: files come through a loader, of which this shape needs none.
+//! let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+//! let mut sources = Sources::new(&no_files);
+//! let mut sink = Sink::new();
+//! let source = sources.add("cuff.toml", shape.into())?;
+//! let reader = frontend::reader_for_extension("toml").ok_or("no reader")?;
+//!
+//! let program = picot::compile(&source, reader, &Options::default(), &mut sources, &mut sink);
+//! let program = program.ok_or_else(|| format!("{:?}", sink.diagnostics()))?;
+//! let verified = verify(&program, &mut sink).ok_or("cannot be worked")?;
+//!
+//! let target = backends::target("crochet").ok_or("no target")?;
+//! let mut text = Vec::new();
+//! target.configure("terms = 'uk'".parse()?)?.emit(&verified, &mut text, &mut sink)?;
+//! assert!(String::from_utf8(text)?.contains("Rnds 1-9: 40 dc (40)"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod backends;
 pub mod diag;

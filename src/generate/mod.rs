@@ -1,8 +1,8 @@
 //! From a surface to a stitch graph: rows, first row, shaping, short rows and relaxation.
 //!
 //! The tube is covered by one helix (paper, section 3.2): row `tau` of the helix lies at u = U(tau), and H(tau) = S(U(tau),
-//! frac tau). Nodes are open loops. Surfaces of revolution get clean repeats ([`symmetric`]); all others are woven
-//! row by row ([`weave`]). In the end all nodes settle on the surface ([`relax`]).
+//! frac tau). Nodes are open loops. Surfaces of revolution get clean repeats (`symmetric`); all others are woven
+//! row by row (`weave`). In the end all nodes settle on the surface (`relax`).
 
 pub mod capunaman;
 mod finish;
