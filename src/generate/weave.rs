@@ -16,7 +16,7 @@ use crate::shape::ParametricSurface;
 use glam::DVec3;
 use std::ops::Range;
 
-/// Neighbors on either side that give the course direction at a base.
+/// Neighbors on either side that give the course direction at a base, at most; never more than a sixth of a turn away.
 const REACH: usize = 3;
 /// How far a stitch stretches or shrinks toward the level of its neighbors, per stitch height of difference, and at most.
 const LEVELING: f64 = 0.7;
@@ -208,30 +208,31 @@ impl<'s> Weaver<'s> {
         missing.extend(bases.iter().map(|id| self.missing_at(*id)));
         self.missing = missing;
         self.feet.clear();
+        let reach = reach(n + self.ring.len());
         let mut neighbors = 0.0;
-        for k in 0..n.min(REACH) {
+        for k in 0..n.min(reach) {
             neighbors += self.missing[k];
         }
         for (i, &base) in bases.iter().enumerate() {
-            // `neighbors` is the sum over i - REACH ..= i + REACH, cut at the ends.
-            if let Some(enters) = self.missing.get(i + REACH) {
+            // `neighbors` is the sum over i - reach ..= i + reach, cut at the ends.
+            if let Some(enters) = self.missing.get(i + reach) {
                 neighbors += enters;
             }
-            if i > REACH {
-                neighbors -= self.missing[i - REACH - 1];
+            if i > reach {
+                neighbors -= self.missing[i - reach - 1];
             }
             if self.sheet.v[base as usize] + 1.0 > self.rows.count {
                 return i;
             }
-            let left = if i >= REACH {
-                bases[i - REACH]
+            let left = if i >= reach {
+                bases[i - reach]
             } else {
-                self.behind.get(REACH - i - 1).or(self.behind.last()).copied().unwrap_or(bases[0])
+                self.behind.get(reach - i - 1).or(self.behind.last()).copied().unwrap_or(bases[0])
             };
-            let right = bases.get(i + REACH).or(self.ring.get(i + REACH - n.min(i + REACH)));
+            let right = bases.get(i + reach).or(self.ring.get(i + reach - n.min(i + reach)));
             let right = right.copied().unwrap_or(bases[n - 1]);
             let (along, up) = self.sheet.directions(base, left, right);
-            let others = i.min(REACH) + (n - 1 - i).min(REACH);
+            let others = i.min(reach) + (n - 1 - i).min(reach);
             let lag = if others > 0 {
                 self.missing[i] - (neighbors - self.missing[i]) / others as f64
             } else {
@@ -411,9 +412,10 @@ impl<'s> Weaver<'s> {
         const THRESHOLD: f64 = 0.5;
         const COOLDOWN: i32 = 4;
         let n = bases.len();
+        let reach = reach(n);
         let feet: Vec<Foot> = (0..n)
             .map(|i| {
-                let (left, right) = (bases[i.saturating_sub(REACH)], bases[(i + REACH).min(n - 1)]);
+                let (left, right) = (bases[i.saturating_sub(reach)], bases[(i + reach).min(n - 1)]);
                 let (along, up) = self.sheet.directions(bases[i], left, right);
                 self.sheet.walk(self.surface, bases[i], up, self.sheet.height, along)
             })
@@ -491,6 +493,11 @@ impl<'s> Weaver<'s> {
         }
         (tops, works)
     }
+}
+
+/// Neighbors that give the course direction in a ring of `size` loops.
+fn reach(size: usize) -> usize {
+    (size / 4).clamp(1, REACH)
 }
 
 /// The last loop that the yarn made: the top of the last wale, or the end of the first row.
