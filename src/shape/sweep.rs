@@ -6,6 +6,7 @@ use super::meridian::Meridian;
 use super::profile::Stack;
 use super::spec::{Fault, TubeSpec};
 use super::{End, Jet, ParametricSurface, fold};
+use crate::math;
 use glam::DVec3;
 use std::fmt;
 use std::ops::Range;
@@ -19,7 +20,7 @@ const TIP: f64 = 1e-5;
 /// A tube made of sections along a curve.
 ///
 /// Where it shrinks to a point at a closed end that point is its pole; a closed end with a size is shut by a flat
-/// cap, so u in [0, 1] covers cap, tube and cap in proportion to their lengths. The parameter of a single
+/// cap with a rounded rim, for yarn holds no sharp edge, so u in [0, 1] covers cap, tube and cap in proportion to their lengths. The parameter of a single
 /// segment with open ends is the curve parameter; with several segments or closed ends u follows the
 /// length of the meridian, so that its speed is even, whatever the speeds of the segments are. Beyond an open end
 /// the surface goes on straight, beyond a pole on the other side.
@@ -46,14 +47,57 @@ impl fmt::Debug for Sweep {
     }
 }
 
+/// Radius of a cap's rounded rim as a share of its radius: usual, least and greatest.
+const ROUNDED: f64 = 0.2;
+const ROUNDED_RANGE: [f64; 2] = [0.1, 0.5];
+
+/// Length of the meridian of a cap in radii.
+fn cap_length(rounded: f64) -> f64 {
+    1.0 - rounded + 0.5 * math::PI * rounded
+}
+
+/// Meridian of a cap: a flat disk, then a quarter turn down to the wall.
+struct Cap {
+    /// Distance from the axis as a share of the radius, and its slope.
+    share: f64,
+    share_slope: f64,
+    /// Height over the wall's end in radii of the rim, and its slope.
+    rise: f64,
+    rise_slope: f64,
+}
+
+impl Cap {
+    /// At a share of the meridian, from 0 at the pole to 1 at the wall.
+    fn at(x: f64, rounded: f64) -> Self {
+        let total = cap_length(rounded);
+        let length = x * total;
+        let angle = (length - (1.0 - rounded)) / rounded;
+        if angle <= 0.0 {
+            return Self { share: length, share_slope: total, rise: 1.0, rise_slope: 0.0 };
+        }
+        let (sin, cos) = math::sin_cos(angle);
+        let speed = total / rounded;
+        Self {
+            share: 1.0 - rounded + rounded * sin,
+            share_slope: speed * rounded * cos,
+            rise: cos,
+            rise_slope: -speed * sin,
+        }
+    }
+}
+
 /// How the surface goes on at an end.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tip {
     closed: bool,
     /// Part of u that the cap takes.
     width: f64,
-    /// The pole.
+    /// The pole, and the unit vector out of the tube there.
     center: DVec3,
+    outward: DVec3,
+    /// Radius of the rounded rim in mm, and as a share of the cap's radius.
+    rim: f64,
+    rounded: f64,
     /// Greatest rate at which a straight continuation narrows.
     shrink: f64,
 }
@@ -61,6 +105,18 @@ struct Tip {
 impl Sweep {
     /// The tube that `spec` describes. Takes about a millisecond.
     pub fn new(spec: &TubeSpec) -> Result<Self, Fault> {
+        Self::build(spec, |_| ROUNDED)
+    }
+
+    /// The same with the radius (mm) of the rounded rims of caps: what the fabric can turn around. It is kept between a
+    /// tenth and a half of the cap's radius.
+    pub fn with_rim(spec: &TubeSpec, rim: f64) -> Result<Self, Fault> {
+        Self::build(spec, |radius| {
+            if radius > 0.0 { (rim / radius).clamp(ROUNDED_RANGE[0], ROUNDED_RANGE[1]) } else { ROUNDED }
+        })
+    }
+
+    fn build(spec: &TubeSpec, rounded: impl Fn(f64) -> f64) -> Result<Self, Fault> {
         let finite = |p: DVec3| p.is_finite() && p.abs().max_element() <= 1e7;
         if spec.curve.iter().any(|segment| !segment.points().iter().copied().all(finite)) {
             return Err(Fault::NotFinite);
@@ -93,18 +149,31 @@ impl Sweep {
                 let speed = sweep.chain.at(w).speed;
                 (speed * speed + sweep.stack.pace_squared(w)).sqrt()
             };
-            Meridian::new(&breaks, spec.curve.len() == 1, disks.map(|disk| disk.1), pace)
+            Meridian::new(
+                &breaks,
+                spec.curve.len() == 1,
+                disks.map(|disk| disk.1 * cap_length(rounded(disk.1))),
+                pace,
+            )
         };
         let body = meridian.body();
         sweep.meridian = meridian;
-        let tip = |(end, point, _): (End, bool, f64), (center, _): (DVec3, f64), cap: f64| Tip {
-            closed: end == End::Closed,
-            width: if point { TIP } else { cap },
-            center,
-            shrink: 0.0,
+        let tip = |(end, point, w): (End, bool, f64), (center, radius): (DVec3, f64), cap: f64| {
+            let outward = sweep.chain.at(w).tangent * (2.0 * w - 1.0);
+            let rounded = rounded(radius);
+            let rim = rounded * radius;
+            Tip {
+                closed: end == End::Closed,
+                width: if point { TIP } else { cap },
+                center: center + outward * rim,
+                outward,
+                rim,
+                rounded,
+                shrink: 0.0,
+            }
         };
-        sweep.start = tip(ends[0], disks[0], body.start);
-        sweep.end = tip(ends[1], disks[1], 1.0 - body.end);
+        let tips = [tip(ends[0], disks[0], body.start), tip(ends[1], disks[1], 1.0 - body.end)];
+        [sweep.start, sweep.end] = tips;
         sweep.start.shrink = sweep.shrink(0.0, -1.0);
         sweep.end.shrink = sweep.shrink(1.0, 1.0);
         Ok(sweep)
@@ -187,12 +256,13 @@ impl Sweep {
                 return Jet { du: jet.du * flip, ..jet };
             }
             let rim = self.tube(edge + sign * tip.width, v);
-            let arm = rim.point - tip.center;
-            let share = depth / tip.width;
+            let arm = rim.point - (tip.center - tip.outward * tip.rim);
+            let cap = Cap::at(depth / tip.width, tip.rounded);
+            let slope = flip * sign / tip.width;
             return Jet {
-                point: tip.center + arm * share,
-                du: arm * (flip * sign / tip.width),
-                dv: rim.dv * share,
+                point: tip.center + arm * cap.share + tip.outward * (tip.rim * (cap.rise - 1.0)),
+                du: (arm * cap.share_slope + tip.outward * (tip.rim * cap.rise_slope)) * slope,
+                dv: rim.dv * cap.share,
             };
         }
         const STEP: f64 = 1e-5;

@@ -210,23 +210,25 @@ fn a_ball_by_sections_is_round() {
 }
 
 #[test]
-fn closed_ends_with_a_size_get_flat_caps() {
+fn closed_ends_with_a_size_get_flat_caps_with_round_rims() {
     let sweep = Sweep::new(&closed(straight(50.0, vec![circle(0.0, 20.0), circle(1.0, 10.0)]))).unwrap();
     let side = Cone { start: 20.0, end: 10.0, length: 50.0 };
     let range = sweep.tube_range();
-    let meridian = 20.0 + side.slant() + 10.0;
-    assert!((range.start - 20.0 / meridian).abs() < 1e-6 && (range.end - 1.0 + 10.0 / meridian).abs() < 1e-6);
+    let cap = 0.8 + 0.1 * PI; // disk and quarter turn of a rim of a fifth, in radii
+    let meridian = 20.0 * cap + side.slant() + 10.0 * cap;
+    let shares = (20.0 * cap / meridian, 10.0 * cap / meridian);
+    assert!((range.start - shares.0).abs() < 1e-6 && (range.end - 1.0 + shares.1).abs() < 1e-6);
     let parts = [0.0..range.start, range.clone(), range.end..1.0];
     let lengths = parts.map(|part| length_along(&sweep, 0.3, part, 8));
-    for (length, exact) in lengths.iter().zip([20.0, side.slant(), 10.0]) {
+    for (length, exact) in lengths.iter().zip([20.0 * cap, side.slant(), 10.0 * cap]) {
         assert!((length - exact).abs() < 1e-3, "{length} against {exact}");
     }
     for k in 0..8 {
         let v = f64::from(k) / 8.0;
-        assert!(sweep.point(0.0, v).length() < 1e-9);
-        assert!(sweep.point(1.0, v).distance(DVec3::new(0.0, 0.0, 50.0)) < 1e-9);
-        assert!(sweep.point(0.5 * range.start, v).z.abs() < 1e-9, "the bottom is flat");
-        assert!((sweep.point(0.5 * range.start, v).truncate().length() - 10.0).abs() < 1e-9);
+        assert!(sweep.point(0.0, v).distance(DVec3::new(0.0, 0.0, -4.0)) < 1e-9);
+        assert!(sweep.point(1.0, v).distance(DVec3::new(0.0, 0.0, 52.0)) < 1e-9);
+        assert!((sweep.point(0.5 * range.start, v).z + 4.0).abs() < 1e-9, "the bottom is flat");
+        assert!((sweep.point(0.5 * range.start, v).truncate().length() - 10.0 * cap).abs() < 1e-9);
     }
     assert_jets(&sweep, &INNER);
     assert_outward(&sweep);
@@ -238,8 +240,10 @@ fn closed_ends_with_a_size_get_flat_caps() {
 #[test]
 fn a_cone_with_an_apex_stays_a_cone() {
     let sweep = Sweep::new(&closed(straight(50.0, vec![circle(0.0, 0.0), circle(1.0, 30.0)]))).unwrap();
-    let exact = Cone { start: 0.0, end: 30.0, length: 50.0 }.area() + PI * 900.0;
-    assert!((area(&sweep, 64, 16) / exact - 1.0).abs() < 1e-3);
+    // The base is a disk with a rim of a fifth: Pappus for the quarter turn.
+    let base = 900.0 * PI * (0.64 + 0.4 * (0.4 * PI + 0.2));
+    let exact = Cone { start: 0.0, end: 30.0, length: 50.0 }.area() + base;
+    assert!((area(&sweep, 256, 16) / exact - 1.0).abs() < 1e-3, "{} {exact}", area(&sweep, 256, 16));
     let jet = sweep.jet(0.0, 0.0);
     assert!((jet.du.normalize().x - 30.0 / sweep_slant(30.0, 50.0)).abs() < 1e-6);
 }
