@@ -139,7 +139,7 @@ fn document_of(walk: &mut Walk<'_>, document: &Spanned<DeTable<'_>>, file: &str)
     };
     unsupported(walk, top);
     let (trunk, name, (gauge, gauge_span)) = (trunk?, name?, gauge?);
-    let (surface, places) = trunk.sweep(walk)?;
+    let (surface, places) = trunk.sweep(RIM * gauge.height, walk)?;
     let (start, end) = (places.start, places.end);
     fit::check(walk, &surface, &places, &gauge, gauge_span).then(|| Shape {
         name,
@@ -147,6 +147,9 @@ fn document_of(walk: &mut Walk<'_>, document: &Spanned<DeTable<'_>>, file: &str)
         tubes: vec![crate::shape::Tube { name: "trunk".to_owned(), surface: Box::new(surface), start, end }],
     })
 }
+
+/// Radius of the rounded rim of a flat end, in stitch heights: the tightest edge that rows can follow without a crease.
+const RIM: f64 = 2.0;
 
 /// The name of the object: the file's own name where none is given.
 fn name(walk: &mut Walk<'_>, top: &DeTable<'_>, file: &str) -> Option<String> {

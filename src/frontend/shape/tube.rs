@@ -92,8 +92,9 @@ fn sizes(walk: &mut Walk<'_>, sections: &[Placed], start: End, end: End) -> bool
 }
 
 impl Tube {
-    /// The surface, and where its parts stand; `None` when the geometry cannot be, with the reason reported.
-    pub(super) fn sweep(self, walk: &mut Walk<'_>) -> Option<(Sweep, Places)> {
+    /// The surface with rims of radius `rim` (mm) on its caps, and where its parts stand; `None` when the geometry cannot
+    /// be, with the reason reported.
+    pub(super) fn sweep(self, rim: f64, walk: &mut Walk<'_>) -> Option<(Sweep, Places)> {
         let spec = TubeSpec {
             curve: self.segments.iter().map(|segment| segment.bezier).collect(),
             sections: self.sections.iter().map(|placed| placed.section.clone()).collect(),
@@ -101,7 +102,7 @@ impl Tube {
             start: self.places.start,
             end: self.places.end,
         };
-        match Sweep::new(&spec) {
+        match Sweep::with_rim(&spec, rim) {
             Ok(sweep) => Some((sweep, self.places)),
             Err(fault) => {
                 let diagnostic = self.explain(fault);
