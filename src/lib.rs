@@ -117,13 +117,15 @@ pub fn program(shape: &Shape, options: &Options, sink: &mut Sink<'_>) -> Option<
     };
     for tube in &shape.tubes {
         sink.stage("generate");
-        let graph = generate::generate(tube, &shape.gauge, &options.generate, sink)?;
+        let mut graph = generate::generate(tube, &shape.gauge, &options.generate, sink)?;
         sink.stage("trace");
         let finish = match tube.end {
             End::Open => Finish::Open,
             End::Closed => Finish::DrawnShut,
         };
-        program.pattern.parts.push(lower::trace(&tube.name, &graph, finish));
+        let mut part = lower::trace(&tube.name, &graph, finish);
+        lower::trim(&mut graph, &mut part);
+        program.pattern.parts.push(part);
         program.graphs.push(graph);
     }
     sink.stage("passes");

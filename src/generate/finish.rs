@@ -7,7 +7,8 @@ use crate::ir::{Direction, Graph, Node, NodeId, Tile};
 use glam::DVec3;
 
 /// The graph of a finished sheet. `start` is the number of nodes of the first row.
-pub(crate) fn graph(sheet: &Sheet, rows: &Rows, start: usize, poles: [Option<DVec3>; 2]) -> Graph {
+/// `turn` is the place around the tube where the helix began.
+pub(crate) fn graph(sheet: &Sheet, rows: &Rows, start: usize, poles: [Option<DVec3>; 2], turn: f64) -> Graph {
     let mut order = Order { new_id: vec![NodeId::MAX; sheet.len()], next: 0, tiles: Vec::new() };
     order.tiles.reserve(sheet.main.len() + sheet.main.len() / 16);
     for id in 0..start {
@@ -32,7 +33,9 @@ pub(crate) fn graph(sheet: &Sheet, rows: &Rows, start: usize, poles: [Option<DVe
     let mut nodes = vec![Node { position: DVec3::ZERO, u: 0.0, tau: 0.0, v: 0.0 }; sheet.len()];
     for (old, &new) in order.new_id.iter().enumerate() {
         if let Some(node) = nodes.get_mut(new as usize) {
-            let v = sheet.v[old] - sheet.v[old].floor();
+            let v = (sheet.v[old] + turn).rem_euclid(1.0);
+            // A hair below zero rounds up to a whole turn.
+            let v = if v < 1.0 { v } else { 0.0 };
             *node = Node { position: sheet.point[old], u: sheet.u[old], tau: rows.tau(sheet.u[old]), v };
         }
     }

@@ -10,6 +10,7 @@ mod first_row;
 mod options;
 mod relax;
 mod rows;
+mod seam;
 mod sheet;
 mod short_rows;
 mod staircase;
@@ -24,6 +25,7 @@ use crate::shape::{End, ParametricSurface, Tube};
 use glam::DVec3;
 use relax::{Effort, Ends, Mark, Relaxer};
 use rows::Rows;
+use seam::Turned;
 use sheet::Sheet;
 use weave::{Outcome, Weaver};
 
@@ -46,7 +48,8 @@ pub fn generate(tube: &Tube, gauge: &Gauge, options: &Options, sink: &mut Sink<'
         let message = format!("the option `{name}` is out of range");
         return fail(sink, Code::OptionOutOfRange, message, &format!("give it a value {right}"));
     }
-    let surface = &*tube.surface;
+    let turned = Turned::to_slowest_side(&*tube.surface);
+    let surface: &dyn ParametricSurface = &turned;
     let ends = [tube.start, tube.end];
     let expected = area(surface) / (gauge.width * gauge.height);
     if !expected.is_finite() {
@@ -83,7 +86,7 @@ pub fn generate(tube: &Tube, gauge: &Gauge, options: &Options, sink: &mut Sink<'
     if sheet.point.iter().any(|p| !p.is_finite()) {
         return fail(sink, Code::SurfaceBroken, "stitches ran off this surface".into(), GENTLER);
     }
-    Some(finish::graph(&sheet, &rows, start, ground.poles))
+    Some(finish::graph(&sheet, &rows, start, ground.poles, turned.by))
 }
 
 /// What all ways of laying stitches share.

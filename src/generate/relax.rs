@@ -15,8 +15,9 @@ const STEP_REST: f64 = 0.9;
 const STEP_TILE: f64 = 0.5;
 /// Pull of the last turn of tops toward its level.
 const LEVEL_WEIGHT: f64 = 0.3;
-/// Derivatives of the surface are looked up again every so many sweeps; between them points move to first order.
-const REFRESH: u32 = 4;
+/// Derivatives of the surface are looked up again every so many sweeps; between them points move to first order. They are
+/// fresh at the start, for every relaxation leaves them so.
+const REFRESH: u32 = 6;
 /// Largest momentum.
 const MOMENTUM: f64 = 0.85;
 /// Longest step of a sweep, in stitch heights.
@@ -112,7 +113,14 @@ impl Relaxer {
         for sweep in 0..effort.sweeps {
             let momentum =
                 if sweep == 0 { 0.0 } else { MOMENTUM.min(f64::from(sweep) / (f64::from(sweep) + 3.0)) };
-            self.advance(surface, sheet, first, momentum, sweep % REFRESH == 0, ends.range);
+            self.advance(
+                surface,
+                sheet,
+                first,
+                momentum,
+                sweep > 0 && sweep.is_multiple_of(REFRESH),
+                ends.range,
+            );
             self.gather(sheet, from, effort.squareness);
             self.solve(sheet, first, &ends);
         }

@@ -112,10 +112,8 @@ impl<'s> Weaver<'s> {
 
     /// Weaves all rows and settles the whole. `progress` hears of rows done.
     pub(crate) fn run(&mut self, mut progress: impl FnMut(u64, u64)) -> Outcome {
-        let mut first_batch = true;
         loop {
-            let length = self.batch_length(first_batch);
-            first_batch = false;
+            let length = self.batch_length();
             self.part_batch = length < self.ring.len();
             self.marks.push(Mark::of(&self.sheet));
             let rest = self.ring.split_off(length);
@@ -155,23 +153,12 @@ impl<'s> Weaver<'s> {
 
     /// How much of the ring the next batch takes. A short row must not cross the end of a batch, or a cusp grows there that
     /// never gets one; so the end moves to where the fabric is most advanced.
-    fn batch_length(&self, first: bool) -> usize {
+    fn batch_length(&self) -> usize {
         let n = self.ring.len();
         if !self.options.short_rows {
             return n;
         }
-        if first {
-            let coldest = self.slowest_side();
-            let start = self.sheet.v[self.ring[0] as usize];
-            let ahead = (coldest - start).rem_euclid(1.0);
-            if (0.12..0.88).contains(&ahead) {
-                let target = start + ahead;
-                let found = self.ring.iter().position(|id| self.sheet.v[*id as usize] >= target);
-                return found.unwrap_or(n).max(1);
-            }
-            return n;
-        }
-        if self.part_batch || n < 6 {
+        if self.part_batch || n < 6 || self.marks.is_empty() {
             return n;
         }
         let missing: Vec<f64> = self.ring.iter().map(|id| self.missing_at(*id)).collect();
@@ -183,20 +170,6 @@ impl<'s> Weaver<'s> {
             }
         }
         if smooth(0) - smooth(least) > SEAM && least > 2 && least + 2 < n { least } else { n }
-    }
-
-    /// The side of the tube on which rows lie closest.
-    fn slowest_side(&self) -> f64 {
-        let mut best = (f64::MAX, 0.0);
-        for j in 0..48 {
-            let v = f64::from(j) / 48.0;
-            let speed: f64 =
-                (0..16).map(|i| row_speed(&self.surface.jet((f64::from(i) + 0.5) / 16.0, v))).sum();
-            if speed < best.0 - 1e-9 * speed {
-                best = (speed, v);
-            }
-        }
-        best.1
     }
 
     /// Feet of the stitches over the bases: an offset of the front, leveled a little. Returns how many bases still lie below

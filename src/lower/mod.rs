@@ -1,5 +1,7 @@
 //! From one level of the intermediate representation to the next.
 
 pub mod trace;
+pub mod trim;
 
 pub use trace::trace;
+pub use trim::trim;
