@@ -73,7 +73,18 @@ pub fn compile(
     sources: &mut Sources<'_>,
     sink: &mut Sink<'_>,
 ) -> Option<Program> {
-    match read(source, reader, options, sources, sink)? {
+    let input = read(source, reader, options, sources, sink)?;
+    compile_input(input, source, options, sink)
+}
+
+/// From what was read to a program; `source` is where it was read.
+pub fn compile_input(
+    input: Input,
+    source: &Source,
+    options: &Options,
+    sink: &mut Sink<'_>,
+) -> Option<Program> {
+    match input {
         Input::Shape(shape) => program(&shape, options, sink),
         Input::Program(program) => Some(*program),
         Input::Code(_) => {

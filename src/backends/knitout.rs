@@ -1,7 +1,59 @@
 //! Knitout (`.k`): machine code in the common format of V-bed knitting machines.
 
-use crate::ir::machine::{CarrierSet, Code, Instruction};
+use super::{Backend, Error, Format};
+use crate::diag::Sink;
+use crate::ir::machine::{CarrierSet, Checked, Choice, Code, Instruction, Machine};
+use crate::ir::verify::Verified;
+use crate::lower::machine::{Options, lower};
 use std::io::{self, Write};
+
+/// Machine code for a V-bed knitting machine.
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Knitout {
+    /// The machine; `swg091n2` when none is named.
+    pub machine: Option<Choice>,
+    /// Stitches without an exact counterpart become knit loops, each with a warning.
+    pub approximate: bool,
+    /// Leaves out the waste section that the machine's profile asks for.
+    pub no_waste: bool,
+}
+
+impl Format for Knitout {
+    const NAME: &'static str = "knitout";
+    const EXTENSION: &'static str = "k";
+    const ABOUT: &'static str = "machine code for V-bed knitting machines; each stitch becomes a knit loop";
+}
+
+impl Backend for Knitout {
+    fn emit(&self, program: &Verified<'_>, out: &mut dyn Write, sink: &mut Sink<'_>) -> Result<(), Error> {
+        let options = Options { approximate: self.approximate, no_waste: self.no_waste };
+        let code = program_code(program, self.machine.as_ref(), "swg091n2", &options, Self::NAME, sink)?;
+        Ok(write(&code, out)?)
+    }
+
+    fn emit_code(&self, code: &Checked<'_>, out: &mut dyn Write, _: &mut Sink<'_>) -> Result<(), Error> {
+        Ok(write(code, out)?)
+    }
+}
+
+/// Lowers a program for a machine. What it cannot make is a refusal, with the place in the sink.
+pub(super) fn program_code(
+    program: &Verified<'_>,
+    machine: Option<&Choice>,
+    usual: &str,
+    options: &Options,
+    backend: &'static str,
+    sink: &mut Sink<'_>,
+) -> Result<Code, Error> {
+    let refused = |what: String| Error::Unsupported { backend, what };
+    let machine = match machine {
+        Some(Choice(machine)) => machine.clone(),
+        None => Machine::named(usual).ok_or_else(|| refused("no machine is named".to_owned()))?,
+    };
+    let lowered = lower(program, &machine, options, sink);
+    Ok(lowered.ok_or_else(|| refused(format!("`{}` cannot make it", machine.name)))?.code)
+}
 
 /// Writes a program: magic line, header, one instruction a line, comments where they stood.
 pub fn write(code: &Code, out: &mut dyn Write) -> io::Result<()> {

@@ -2,10 +2,12 @@
 
 pub mod crochet;
 pub mod json;
+pub mod kcode;
 pub mod knitout;
 pub mod xml;
 
 use crate::diag::Sink;
+use crate::ir::machine::Checked;
 use crate::ir::verify::Verified;
 use crate::settings;
 use serde::de::DeserializeOwned;
@@ -16,6 +18,17 @@ pub trait Backend {
     /// Writes the program. Remarks (an approximation, an estimate) go to the sink.
     fn emit(&self, program: &Verified<'_>, out: &mut dyn io::Write, sink: &mut Sink<'_>)
     -> Result<(), Error>;
+
+    /// Writes machine code that was read from a file. Only formats of machines can.
+    fn emit_code(
+        &self,
+        _code: &Checked<'_>,
+        _out: &mut dyn io::Write,
+        _sink: &mut Sink<'_>,
+    ) -> Result<(), Error> {
+        let what = "machine code holds no pattern; it becomes knitout or kcode".to_owned();
+        Err(Error::Unsupported { backend: "this target", what })
+    }
 }
 
 /// A kind of output: its facts, and options that come from `--set KEY=VALUE` through serde.
@@ -89,8 +102,13 @@ impl Target {
 }
 
 /// Every target.
-pub static TARGETS: &[Target] =
-    &[Target::of::<crochet::Crochet>(), Target::of::<json::Json>(), Target::of::<xml::Xml>()];
+pub static TARGETS: &[Target] = &[
+    Target::of::<crochet::Crochet>(),
+    Target::of::<json::Json>(),
+    Target::of::<kcode::Kcode>(),
+    Target::of::<knitout::Knitout>(),
+    Target::of::<xml::Xml>(),
+];
 
 /// The target with this name.
 pub fn target(name: &str) -> Option<&'static Target> {

@@ -48,6 +48,8 @@ pub(crate) enum Color {
 pub(crate) enum Command {
     /// Compile a shape to a pattern and other outputs
     Build(Build),
+    /// Check patterns and machine programs
+    Check(Check),
     /// Measure how close the stitches come to the shape
     Measure(Measure),
     /// Time the compiler; with --paper, set it beside the tables of the paper
@@ -71,6 +73,9 @@ pub(crate) struct Reading {
     /// Stitch size in place of the file's own, such as 2.5mmx2.5mm
     #[arg(long, value_name = "WxH", value_parser = gauge)]
     pub(crate) gauge: Option<Gauge>,
+    /// Knitting machine for `.k` and `.kc`: a name of `picot list machines`, or a profile file
+    #[arg(long, value_name = "NAME")]
+    pub(crate) machine: Option<String>,
     /// Set an option of the generator or of a target (`picot list targets` shows the keys)
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub(crate) set: Vec<(String, toml::Value)>,
@@ -100,6 +105,36 @@ pub(crate) struct Build {
     /// Print how long each stage took
     #[arg(long)]
     pub(crate) timings: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  picot check ball.xml sleeve.k
+  picot check sleeve.kc --machine kniterate --against sleeve.toml")]
+pub(crate) struct Check {
+    /// Written patterns, Picot XML, `.k` or `.kc`; `-` is stdin
+    #[arg(required = true, value_name = "FILE")]
+    pub(crate) files: Vec<String>,
+    /// Form of the findings
+    #[arg(long, value_name = "FORMAT", default_value = "human")]
+    pub(crate) format: CheckFormat,
+    /// A shape or pattern whose loops a machine program must make, one by one
+    #[arg(long, value_name = "INPUT")]
+    pub(crate) against: Option<String>,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+}
+
+/// Form of findings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CheckFormat {
+    /// With the lines of the file, on stderr.
+    Human,
+    /// One line each, on stdout.
+    Short,
+    /// On stdout, for programs.
+    Json,
 }
 
 /// A level of the compiler.
@@ -168,6 +203,8 @@ pub(crate) enum Topic {
     Passes,
     /// Stitches in US and UK terms.
     Stitches,
+    /// Knitting machines, and every field of a machine profile.
+    Machines,
     /// Diagnostic codes.
     Codes,
 }

@@ -9,6 +9,8 @@ use super::route::{Routed, route};
 use super::{Failure, Status};
 use picot::backends;
 use picot::diag::{Sink, Sources};
+use picot::frontend::Input;
+use picot::ir::machine;
 use picot::ir::verify::{Verified, verify};
 use picot::ir::{Part, Program};
 use rayon::prelude::*;
@@ -123,7 +125,13 @@ fn stages(
     done: &mut Done,
 ) -> Result<(), Failure> {
     let source = files::open(sources, &job.input, stdin)?;
-    let Some(program) = picot::compile(&source, job.reader, &routed.options, sources, sink) else {
+    let Some(input) = picot::read(&source, job.reader, &routed.options, sources, sink) else {
+        return Ok(());
+    };
+    if let (Input::Code(code), None) = (&input, arguments.dump) {
+        return convert(code, job, plan, routed, sink, done);
+    }
+    let Some(program) = picot::compile_input(input, &source, &routed.options, sink) else {
         return Ok(());
     };
     if let Some(level) = arguments.dump {
@@ -145,15 +153,47 @@ fn stages(
             .configure(routed.tables[*index].clone())
             .map_err(|error| Failure::usage(error.message().to_owned()))?;
         let mut bytes = Vec::new();
-        backend.emit(&verified, &mut bytes, sink).map_err(|error| match error {
-            backends::Error::Io(error) => Failure::file(&job.input, error),
-            backends::Error::Unsupported { .. } => {
-                Failure::Impossible { message: format!("{}: {error}", job.input), help: None }
-            }
-        })?;
+        backend.emit(&verified, &mut bytes, sink).map_err(|error| failure(&job.input, error))?;
         done.outputs.push(bytes);
     }
     done.summary = summary(&verified);
+    Ok(())
+}
+
+fn failure(input: &str, error: backends::Error) -> Failure {
+    match error {
+        backends::Error::Io(error) => Failure::file(input, error),
+        backends::Error::Unsupported { .. } => {
+            Failure::Impossible { message: format!("{input}: {error}"), help: None }
+        }
+    }
+}
+
+/// Machine code from one format to another: it is executed first, and must be sound.
+fn convert(
+    code: &machine::Code,
+    job: &Job,
+    plan: &Plan,
+    routed: &Routed,
+    sink: &mut Sink<'_>,
+    done: &mut Done,
+) -> Result<(), Failure> {
+    sink.stage("execute");
+    let named = code.header("Machine").and_then(machine::Machine::named);
+    let Some(checked) = machine::check(code, routed.machine.as_ref().or(named.as_ref()), sink) else {
+        return Ok(());
+    };
+    sink.stage("emit");
+    for (index, _) in &job.outputs {
+        let backend = plan.targets[*index]
+            .configure(routed.tables[*index].clone())
+            .map_err(|error| Failure::usage(error.message().to_owned()))?;
+        let mut bytes = Vec::new();
+        backend.emit_code(&checked, &mut bytes, sink).map_err(|error| failure(&job.input, error))?;
+        done.outputs.push(bytes);
+    }
+    let report = checked.report();
+    done.summary = format!("{}: {} loops, {} passes", job.input, report.loops, report.passes);
     Ok(())
 }
 

@@ -6,6 +6,7 @@ use picot::backends::TARGETS;
 use picot::diag::Code;
 use picot::frontend::READERS;
 use picot::ir::Kind;
+use picot::ir::machine::{MACHINES, profile::FIELDS};
 use picot::passes::PASSES;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -72,6 +73,14 @@ fn rows(topic: Topic) -> (&'static str, Vec<Value>) {
                 })
                 .collect(),
         ),
+        Topic::Machines => (
+            "machines",
+            MACHINES
+                .iter()
+                .map(|(name, profile)| json!({ "name": name, "profile": profile }))
+                .chain(FIELDS.iter().map(|field| json!({ "field": field.key, "about": field.about })))
+                .collect(),
+        ),
         Topic::Codes => (
             "codes",
             Code::ALL
@@ -100,6 +109,8 @@ fn cells(topic: Topic, row: &Value) -> Vec<String> {
         Topic::Readers => vec![text("name"), text("extensions"), text("about")],
         Topic::Passes => vec![text("name"), text("about")],
         Topic::Stitches => vec![text("us"), text("us_name"), format!("UK {}", text("uk")), text("uk_name")],
+        Topic::Machines if row["name"].is_string() => vec![text("name"), "built in".to_owned()],
+        Topic::Machines => vec![text("field"), text("about")],
         Topic::Codes => vec![text("code"), text("title")],
     }
 }

@@ -3,6 +3,7 @@
 mod args;
 mod bench;
 mod build;
+mod check;
 mod completions;
 mod explain;
 mod files;
@@ -104,6 +105,7 @@ pub(crate) fn main() -> ExitCode {
     let report = report::Report::new(&cli.global);
     let outcome = match &cli.command {
         Command::Build(arguments) => build::run(arguments, report),
+        Command::Check(arguments) => check::run(arguments, report),
         Command::Measure(arguments) => measure::run(arguments, report),
         Command::Bench(arguments) => bench::run(arguments, report),
         Command::List(arguments) => list::run(arguments),

@@ -1,10 +1,11 @@
 //! `--set KEY=VALUE` finds its owner: the generator's options, or the options of a target.
 
-use super::Failure;
 use super::args::Reading;
+use super::{Failure, files};
 use picot::backends::{TARGETS, Target};
-use picot::diag::did_you_mean;
+use picot::diag::{Sink, Sources, did_you_mean};
 use picot::generate;
+use picot::ir::machine::{MACHINES, Machine};
 
 /// The settings of a run, each with its owner.
 #[derive(Debug)]
@@ -13,6 +14,35 @@ pub(crate) struct Routed {
     pub(crate) options: picot::Options,
     /// For the targets, in the order in which they were asked for.
     pub(crate) tables: Vec<toml::Table>,
+    /// The machine that `--machine` names.
+    pub(crate) machine: Option<Machine>,
+}
+
+/// The machine of a name or a profile file.
+fn machine(named: &str) -> Result<(Machine, toml::Value), Failure> {
+    if let Some(machine) = Machine::named(named) {
+        return Ok((machine, toml::Value::String(named.to_owned())));
+    }
+    if !std::path::Path::new(named).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+        let known = || MACHINES.iter().map(|(name, _)| *name);
+        let failure = Failure::usage(format!("there is no machine `{named}`"));
+        return Err(match did_you_mean(named, known()) {
+            Some(near) => failure.help(format!("did you mean `{near}`?")),
+            None => failure
+                .help(format!("one of {}, or a profile FILE.toml", known().collect::<Vec<_>>().join(", "))),
+        });
+    }
+    let mut sources = Sources::new(&files::load);
+    let source = sources.open(named).map_err(|error| Failure::file(named, error))?;
+    let mut sink = Sink::new();
+    let machine = Machine::read(&source, &mut sink);
+    let table = source.text().ok().and_then(|text| text.parse::<toml::Table>().ok());
+    if let (Some(machine), Some(table)) = (machine, table) {
+        return Ok((machine, toml::Value::Table(table)));
+    }
+    let message = sink.take().first().map(|found| found.message.clone()).unwrap_or_default();
+    Err(Failure::usage(format!("{named}: {message}"))
+        .help("`picot list machines` shows every field of a profile"))
 }
 
 /// Hands each setting to all who have its key. A key that no one has, or a value of the wrong type, is wrong usage.
@@ -40,6 +70,14 @@ pub(crate) fn route(reading: &Reading, targets: &[&'static Target]) -> Result<Ro
             return Err(unknown(key, generator, targets));
         }
     }
+    let machine = reading.machine.as_deref().map(machine).transpose()?;
+    if let Some((_, value)) = &machine {
+        for (target, table) in targets.iter().zip(&mut tables) {
+            if target.keys().contains(&"machine") {
+                table.insert("machine".to_owned(), value.clone());
+            }
+        }
+    }
     for (target, table) in targets.iter().zip(&tables) {
         target.configure(table.clone()).map_err(|error| wrong_value(target.name, &error))?;
     }
@@ -50,7 +88,8 @@ pub(crate) fn route(reading: &Reading, targets: &[&'static Target]) -> Result<Ro
             Failure::usage(format!("--set {key}: out of range")).help(format!("give it a value {right}"))
         );
     }
-    Ok(Routed { options: picot::Options { gauge: reading.gauge, generate }, tables })
+    let machine = machine.map(|(machine, _)| machine);
+    Ok(Routed { options: picot::Options { gauge: reading.gauge, generate }, tables, machine })
 }
 
 fn wrong_value(key: &str, error: &toml::de::Error) -> Failure {

@@ -372,6 +372,70 @@ codes! {
     ///
     /// The profile lists what it does.
     OperationNotPerformed = "E2117", "operation not performed by the machine";
+    /// A stitch has no counterpart on a knitting machine.
+    ///
+    /// Every loop of a tube stays live on its needle until it is worked, so chains inside a round, skipped stitches, rows
+    /// that turn and parts that begin on loops of another part are not knit. Taller stitches and stitches into one strand
+    /// can be approximated: `--set approximate=true`.
+    NotKnittable = "E2201", "no counterpart in knitting";
+    /// The machine cannot make the object: too wide, too narrow, too many loops on a needle, too long a short row.
+    ///
+    /// Part, round and stitch say where; the help names the field of the profile and what would fit.
+    BeyondMachine = "E2202", "the machine cannot make this";
+    /// A machine program does not make the loops of the pattern.
+    ///
+    /// The program is executed and its loops are compared with the pattern's: the same stitches, in the same order, each
+    /// pulled through the same loops. The first difference of a part is shown.
+    NotTheSame = "E2203", "the program does not make the pattern";
+    /// A k-code file has no HOME line.
+    ///
+    /// Right: `HOME` as the first line, after the comments that one dialect begins with.
+    KcodeHead = "E2301", "no HOME line";
+    /// The lines of a k-code pass are incomplete, repeated or mixed with others.
+    ///
+    /// A pass is FRNT, STIF, REAR, STIR and a move, in any order of the first four.
+    KcodePass = "E2302", "a broken pass";
+    /// A FRNT or REAR line is not 15 dots, 252 cells, 15 dots, or a STIF or STIR line holds other than 0-9 and A-Z.
+    ///
+    /// Stop marks (`/`, `\`, digits) stand between the characters of FRNT and REAR and do not count.
+    KcodeBed = "E2303", "a broken bed line";
+    /// A move line has a wrong number of fields, or a type that does not fit its direction.
+    ///
+    /// Wrong: `>> Tr-Rl 0 300 0`. Right: `>> Tr-Rr 0 300 0`, since the last letter follows the direction.
+    KcodeMove = "E2304", "a broken move";
+    /// A rack, carrier, speed or roller value is no number or out of range.
+    ///
+    /// Wrong: `RACK:0.25`, `>> Kn-Kn 7 300 100`. Right: `RACK:0.5`, `>> Kn-Kn 2 300 100`.
+    KcodeNumber = "E2305", "not a number of k-code";
+    /// The carriage does not go to and fro: the first pass goes right, then directions alternate.
+    ///
+    /// Right: a move of the carriage alone between two passes of one direction, `<< Kn-Kn 0 300 0` with nothing marked.
+    KcodeDirection = "E2306", "passes do not alternate";
+    /// The stop marks of a pass contradict each other or its move.
+    ///
+    /// FRNT and REAR have the same marks: one `/`, one `\`, and the number of the carrier that the move names, twice.
+    KcodeMarks = "E2307", "stop marks disagree";
+    /// A transfer without its receiving needle, or at a rack at which needles do not face each other.
+    ///
+    /// At rack R the cell c of REAR faces the cell c + R of FRNT; both are marked `-`.
+    KcodeTransfer = "E2308", "a broken transfer";
+    /// A program has something that k-code has no words for.
+    ///
+    /// A Kniterate has six carriers named 1 to 6, one for each operation, no hook and no sliders, and racks by whole or half
+    /// needles on a bed of 252.
+    NotKcode = "E2310", "k-code cannot say this";
+    /// A stitch without an exact counterpart is knit as a plain loop, as `approximate=true` asks.
+    Approximated = "W2431", "a stitch is approximated";
+    /// A tube has fewer loops than the machine is known to hold well (`tube.min_loops`).
+    NarrowTube = "W2432", "a narrow tube";
+    /// The number of stitch sizes differs from the number of cells of the bed line.
+    KcodeSizes = "W2433", "stitch sizes of another length";
+    /// Crochet cannot be made by a V-bed machine: each stitch is knit as one loop, and nobody has run the file.
+    ///
+    /// Increases, decreases and short rows stay where they are. The gauge comes from a swatch knit on that machine.
+    ///
+    /// Example: `picot build ball.toml --machine kniterate -o ball.kc`; the machine reads a file named `command.kc`.
+    KnitInstead = "N2501", "re-lowered to knitting";
     /// A machine profile cannot be read.
     ///
     /// A profile is TOML; `picot list machines` shows every field with its meaning.

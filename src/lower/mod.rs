@@ -1,5 +1,6 @@
 //! From one level of the intermediate representation to the next.
 
+pub mod machine;
 pub mod trace;
 pub mod trim;
 

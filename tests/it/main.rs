@@ -6,6 +6,7 @@ mod baseline;
 mod cli;
 mod knitout;
 mod loops;
+mod machine;
 mod metrics;
 mod passes;
 mod programs;

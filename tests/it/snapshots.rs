@@ -30,7 +30,7 @@ fn load(name: &str) -> std::io::Result<Vec<u8>> {
 }
 
 /// What each target makes of a shape, with the diagnostics on the way.
-fn compile(path: &Path) -> (Vec<Vec<u8>>, String) {
+fn compile(path: &Path) -> (Vec<(Vec<u8>, String)>, String) {
     let mut sources = Sources::new(&load);
     let mut sink = Sink::new();
     let source = sources.open(path.to_str().expect("plain names")).expect("readable");
@@ -43,16 +43,21 @@ fn compile(path: &Path) -> (Vec<Vec<u8>>, String) {
         for target in TARGETS {
             let backend = target.configure(toml::Table::new()).expect("defaults are sound");
             let mut bytes = Vec::new();
-            if let Err(error) = backend.emit(&verified, &mut bytes, &mut sink) {
+            let mut remarks = Sink::new();
+            if let Err(error) = backend.emit(&verified, &mut bytes, &mut remarks) {
                 bytes = format!("refused: {error}").into_bytes();
             }
-            outputs.push(bytes);
+            outputs.push((bytes, remarks));
         }
     }
     let positions = Positions::new(&sources);
     let here = path.parent().and_then(Path::to_str).unwrap_or_default();
-    let messages = sink.diagnostics().iter().map(|finding| terminal(finding, &positions, false) + "\n");
-    (outputs, messages.collect::<String>().replace(here, "shapes"))
+    let messages = |sink: &Sink<'_>| {
+        let all = sink.diagnostics().iter().map(|finding| terminal(finding, &positions, false) + "\n");
+        all.collect::<String>().replace(here, "shapes")
+    };
+    let outputs = outputs.iter().map(|(bytes, remarks)| (bytes.clone(), messages(remarks))).collect();
+    (outputs, messages(&sink))
 }
 
 #[test]
@@ -61,13 +66,14 @@ fn every_shape_through_every_target() {
         let (outputs, messages) = compile(&path);
         assert_eq!(outputs.len(), TARGETS.len(), "{name} does not compile:\n{messages}");
         let (again, _) = compile(&path);
-        for ((target, bytes), again) in TARGETS.iter().zip(&outputs).zip(&again) {
+        for ((target, (bytes, remarks)), (again, _)) in TARGETS.iter().zip(&outputs).zip(&again) {
             assert!(bytes == again, "{name} to {}: two runs differ", target.name);
             let shown = match target.name {
                 "json" => summary(bytes),
                 _ if target.binary => size(bytes),
                 _ => shortened(bytes),
             };
+            let messages = format!("{messages}{remarks}");
             let messages = if messages.is_empty() { String::new() } else { format!("\n{messages}") };
             let snapshot = format!("{}\n{:-<80}{messages}\n{shown}", text(&path).trim_end(), "");
             let mut settings = insta::Settings::clone_current();

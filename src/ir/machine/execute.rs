@@ -42,6 +42,8 @@ pub struct Run {
     pub report: Report,
     /// The needles at the end, and all loops.
     pub needles: Needles,
+    /// The instruction of each finding, in the order in which the sink got them; sums at the end have none.
+    pub places: Vec<Option<usize>>,
 }
 
 /// A program that keeps the rules. Only [`check`] makes one.
@@ -451,7 +453,7 @@ impl Executor<'_, '_, '_> {
             let field = Some(("carriers.names", format!("{has} carriers")));
             self.findings.push(Finding::TooManyCarriers, None, message, field, "");
         }
-        self.findings.finish();
-        Run { report: self.report, needles: self.needles }
+        let places = self.findings.finish();
+        Run { report: self.report, needles: self.needles, places }
     }
 }

@@ -12,11 +12,13 @@ pub(super) struct Findings<'a, 's, 'o> {
     machine: Option<&'a Machine>,
     sink: &'s mut Sink<'o>,
     seen: BTreeMap<Finding, (u32, Span)>,
+    /// The instruction of each finding that was pushed.
+    places: Vec<Option<usize>>,
 }
 
 impl<'a, 's, 'o> Findings<'a, 's, 'o> {
     pub(super) fn new(code: &'a Code, machine: Option<&'a Machine>, sink: &'s mut Sink<'o>) -> Self {
-        Self { code, machine, sink, seen: BTreeMap::new() }
+        Self { code, machine, sink, seen: BTreeMap::new(), places: Vec::new() }
     }
 
     /// Reports a finding at an instruction. `field` names the profile field that it breaks, with its value.
@@ -54,17 +56,19 @@ impl<'a, 's, 'o> Findings<'a, 's, 'o> {
         if !advice.is_empty() {
             diagnostic = diagnostic.help(advice);
         }
+        self.places.push(op);
         self.sink.push(diagnostic);
     }
 
     /// Says how many findings were counted only.
-    pub(super) fn finish(self) {
+    pub(super) fn finish(self) -> Vec<Option<usize>> {
         for (finding, (count, last)) in self.seen {
             if let Some(more) = count.checked_sub(shown(finding)).filter(|more| *more > 0) {
                 let message = format!("{more} more of the same: {}", finding.title());
                 self.sink.push(Diagnostic::new(finding, message).at(last, "the last one"));
             }
         }
+        self.places
     }
 }
 

@@ -18,8 +18,8 @@ mod state;
 mod yarn;
 
 pub use execute::{Checked, Report, Run, check, execute};
-pub use profile::{MACHINES, Machine};
-pub use state::{Loop, LoopId, Made, NONE};
+pub use profile::{Choice, MACHINES, Machine};
+pub use state::{Loop, LoopId, Made, NONE, Needles};
 
 use crate::diag::Span;
 use std::fmt;
@@ -309,6 +309,13 @@ impl Default for Code {
 }
 
 impl Code {
+    /// An empty program for these carriers, front rail first, with the header that says so.
+    pub fn with_carriers(names: Vec<String>) -> Self {
+        let mut code = Self::default();
+        code.set_header("Carriers", names.join(" "));
+        code.carriers = names;
+        code
+    }
     /// The instructions.
     pub fn ops(&self) -> &[Instruction] {
         &self.ops
@@ -350,29 +357,7 @@ impl Code {
     }
     /// Moves every needle by `by`, so that a program laid out anywhere comes to its place on the bed.
     pub fn shift(&mut self, by: i32) {
-        let moved = |needle: &mut Needle| needle.index = needle.index.saturating_add(by);
-        for op in &mut self.ops {
-            match op {
-                Instruction::Knit(_, needle, _)
-                | Instruction::Tuck(_, needle, _)
-                | Instruction::Miss(_, needle, _)
-                | Instruction::Drop(needle)
-                | Instruction::Amiss(needle) => moved(needle),
-                Instruction::Split(_, from, to, _) | Instruction::Xfer(from, to) => {
-                    moved(from);
-                    moved(to);
-                }
-                Instruction::In(_)
-                | Instruction::InHook(_)
-                | Instruction::ReleaseHook(_)
-                | Instruction::Out(_)
-                | Instruction::OutHook(_)
-                | Instruction::Stitch(..)
-                | Instruction::Rack(_)
-                | Instruction::Pause(_)
-                | Instruction::Extension(_) => {}
-            }
-        }
+        self.ops.iter_mut().for_each(|op| op.shift(by));
     }
     /// The name of a carrier.
     pub fn carrier(&self, id: CarrierId) -> &str {
@@ -381,6 +366,30 @@ impl Code {
 }
 
 impl Instruction {
+    /// Moves its needles by `by`.
+    pub fn shift(&mut self, by: i32) {
+        let moved = |needle: &mut Needle| needle.index = needle.index.saturating_add(by);
+        match self {
+            Self::Knit(_, needle, _)
+            | Self::Tuck(_, needle, _)
+            | Self::Miss(_, needle, _)
+            | Self::Drop(needle)
+            | Self::Amiss(needle) => moved(needle),
+            Self::Split(_, from, to, _) | Self::Xfer(from, to) => {
+                moved(from);
+                moved(to);
+            }
+            Self::In(_)
+            | Self::InHook(_)
+            | Self::ReleaseHook(_)
+            | Self::Out(_)
+            | Self::OutHook(_)
+            | Self::Stitch(..)
+            | Self::Rack(_)
+            | Self::Pause(_)
+            | Self::Extension(_) => {}
+        }
+    }
     /// The needles that it touches.
     pub fn needles(&self) -> impl Iterator<Item = Needle> {
         let (a, b) = match *self {

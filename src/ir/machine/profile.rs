@@ -24,6 +24,7 @@ const fn field(key: &'static str, about: &'static str) -> Field {
 /// Every field of a profile. Those of `stitch_number`, `speed`, `roller` and `waste` may be left out.
 pub static FIELDS: &[Field] = &[
     field("name", "name of the machine, compared with the Machine header without regard to case"),
+    field("header", "the name as the Machine header of Knitout spells it; the name itself when left out"),
     field("kind", "\"v-bed\", a weft-knitting machine with two facing beds"),
     field("operations", "Knitout operations that it performs"),
     field("extensions", "x-* operations that its tools understand"),
@@ -81,6 +82,7 @@ pub static FIELDS: &[Field] = &[
 )]
 pub struct Machine {
     pub name: String,
+    pub header: Option<String>,
     pub kind: Kind,
     pub operations: Vec<String>,
     #[serde(default)]
@@ -96,6 +98,34 @@ pub struct Machine {
     pub speed: Option<Speed>,
     pub roller: Option<Roller>,
     pub waste: Option<Waste>,
+}
+
+/// A machine as an option names it: a built-in one by its name, or a whole profile as a table.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "Named")]
+pub struct Choice(pub Machine);
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Named {
+    Name(String),
+    Profile(Box<Machine>),
+}
+
+impl TryFrom<Named> for Choice {
+    type Error = String;
+    fn try_from(named: Named) -> Result<Self, String> {
+        match named {
+            Named::Name(name) => Machine::named(&name).map(Self).ok_or_else(|| {
+                let known: Vec<&str> = MACHINES.iter().map(|(name, _)| *name).collect();
+                format!("there is no machine `{name}`; built in are {}", known.join(" and "))
+            }),
+            Named::Profile(machine) => match machine.fault() {
+                None => Ok(Self(*machine)),
+                Some((key, what)) => Err(format!("`{key}` {what}")),
+            },
+        }
+    }
 }
 
 macro_rules! tables {

@@ -1,0 +1,157 @@
+//! `picot check`: what is wrong with patterns and machine programs. Writes nothing but its findings.
+
+use super::args::{Check, CheckFormat};
+use super::plan::reader_of;
+use super::progress::Watch;
+use super::report::{self, Report};
+use super::route::{Routed, route};
+use super::{Failure, Status, files, print, print_json};
+use picot::diag::position::Positions;
+use picot::diag::render::{json::object, short::short};
+use picot::diag::{Diagnostic, Severity, Sink, Sources};
+use picot::frontend::Input;
+use picot::ir::machine::{self, Machine};
+use picot::ir::{Direction, Part, Program, Row, Step, verify::verify};
+use picot::lower::machine::{Options, validate::validate};
+use serde_json::{Value, json};
+
+pub(crate) fn run(arguments: &Check, report: Report) -> Result<Status, Failure> {
+    let routed = route(&arguments.reading, &[])?;
+    let stdin = files::stdin_if_named(arguments.files.iter())?;
+    let mut status = Status::Fine;
+    let mut values = Vec::new();
+    let mut lines = String::new();
+    for path in &arguments.files {
+        let mut sources = Sources::new(&files::load);
+        let watch = Watch::new(None);
+        let mut sink = Sink::with_observer(&watch);
+        let parts = check(path, arguments, &routed, &stdin, &mut sources, &mut sink)?;
+        if sink.has_errors() {
+            status = Status::InputErrors;
+        }
+        let found = sink.diagnostics();
+        match arguments.format {
+            CheckFormat::Human => {
+                report::print(&report.render(&sources, found));
+                report.remark(&format!("{path}: {}", verdict(found)));
+            }
+            CheckFormat::Short => {
+                let positions = Positions::new(&sources);
+                for diagnostic in found {
+                    lines += &short(diagnostic, &positions);
+                    lines.push('\n');
+                }
+            }
+            CheckFormat::Json => values.push(file(path, &parts, found, &sources)?),
+        }
+    }
+    match arguments.format {
+        CheckFormat::Human => {}
+        CheckFormat::Short => {
+            print(lines.as_bytes())?;
+        }
+        CheckFormat::Json => {
+            let ok = status == Status::Fine;
+            print_json(&json!({ "schema": "picot.check/1", "ok": ok, "files": values }))?;
+        }
+    }
+    Ok(status)
+}
+
+/// Findings in a few words.
+fn verdict(found: &[Diagnostic]) -> String {
+    let count =
+        |severity: Severity| found.iter().filter(|diagnostic| diagnostic.severity == severity).count();
+    let some = |count: usize, what: &str| match count {
+        0 => None,
+        1 => Some(format!("1 {what}")),
+        _ => Some(format!("{count} {what}s")),
+    };
+    let parts = [some(count(Severity::Error), "error"), some(count(Severity::Warning), "warning")];
+    let text = parts.into_iter().flatten().collect::<Vec<_>>().join(", ");
+    if text.is_empty() { "ok".to_owned() } else { text }
+}
+
+/// Checks one file; returns its parts when it is a pattern.
+fn check(
+    path: &str,
+    arguments: &Check,
+    routed: &Routed,
+    stdin: &[u8],
+    sources: &mut Sources<'_>,
+    sink: &mut Sink<'_>,
+) -> Result<Vec<Value>, Failure> {
+    let reader = reader_of(path, arguments.reading.from.as_deref())?;
+    let source = files::open(sources, path, stdin)?;
+    let input = picot::read(&source, reader, &routed.options, sources, sink);
+    if let (Some(shape), Some(Input::Program(_) | Input::Shape(_))) = (&arguments.against, &input) {
+        return Err(Failure::usage(format!("`{path}` is no machine code to compare with `{shape}`")));
+    }
+    match input {
+        Some(Input::Code(code)) => {
+            let named = code.header("Machine").and_then(Machine::named);
+            let machine = routed.machine.as_ref().or(named.as_ref());
+            let sound = machine::check(&code, machine, sink).is_some();
+            if let (true, Some(shape)) = (sound, &arguments.against) {
+                let reader = reader_of(shape, None)?;
+                let source = files::open(sources, shape, stdin)?;
+                if let Some(program) = picot::compile(&source, reader, &routed.options, sources, sink) {
+                    validate(&program, &code, machine, &Options::default(), sink);
+                }
+            }
+            Ok(Vec::new())
+        }
+        Some(Input::Program(program)) => {
+            verify(&program, sink);
+            Ok(parts(&program))
+        }
+        Some(Input::Shape(_)) | None => Ok(Vec::new()),
+    }
+}
+
+fn file(path: &str, parts: &[Value], found: &[Diagnostic], sources: &Sources<'_>) -> Result<Value, Failure> {
+    let positions = Positions::new(sources);
+    let ok = found.iter().all(|diagnostic| diagnostic.severity != Severity::Error);
+    let diagnostics = found
+        .iter()
+        .map(|diagnostic| serde_json::to_value(object(diagnostic, &positions)))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(|error| Failure::usage(error.to_string()))?;
+    Ok(json!({ "path": path, "ok": ok, "parts": parts, "diagnostics": diagnostics }))
+}
+
+fn parts(program: &Program) -> Vec<Value> {
+    let rounds = |part: &Part| -> Vec<Value> {
+        part.numbered_rows()
+            .map(|(first, row)| {
+                let last = first.saturating_add(row.times.saturating_sub(1));
+                let label = if first == last { first.to_string() } else { format!("{first}-{last}") };
+                let (consumes, produces) = loops(row);
+                json!({ "label": label, "first": first, "last": last, "consumes": consumes, "produces": produces,
+                    "stated": row.stated.map(|(count, _)| count) })
+            })
+            .collect()
+    };
+    program.pattern.parts.iter().map(|part| json!({ "name": part.name, "rounds": rounds(part) })).collect()
+}
+
+/// Loops of the round below, and loops of this round: what goes back is worked into loops of the row itself.
+fn loops(row: &Row) -> (i64, i64) {
+    let (mut consumes, mut produces, mut forward) = (0_i64, 0_i64, true);
+    for step in row.body.steps() {
+        match step {
+            Step::Work(stitch) if forward => {
+                consumes += i64::from(stitch.works);
+                produces += i64::from(stitch.makes);
+            }
+            Step::Work(stitch) => {
+                consumes -= i64::from(stitch.makes);
+                produces -= i64::from(stitch.works);
+            }
+            Step::Turn(direction) => forward = direction == Direction::Forward,
+            Step::Hold { loops, .. } => consumes += i64::from(loops),
+            Step::Leave { .. } | Step::Color(_) => {}
+        }
+    }
+    (consumes, produces)
+}
