@@ -54,16 +54,14 @@ pub fn row(part: &Part, row: &Row, number: u32, options: &Options, sink: &mut Si
     let mut planner = Planner { part, number, options, sink, refused: false, stitch: 0 };
     let mut legs = vec![Leg { direction: Direction::Forward, actions: Vec::new() }];
     let mut height = Height::default();
-    // Loops that the last row leaves stay open with its own, and are bound off with them.
-    let ends = part.rows.last().is_some_and(|last| std::ptr::eq(last, row)) && row.times == 1;
     for step in row.body.steps() {
         planner.stitch += u32::from(matches!(step, Step::Work(_)));
         match step {
             Step::Work(stitch) => planner.work(stitch, &mut legs, &mut height),
             Step::Turn(direction) => legs.push(Leg { direction, actions: Vec::new() }),
             Step::Hold { .. } => planner.refuse("loops set aside for another part", ""),
-            Step::Leave { .. } if ends => {}
-            Step::Leave { .. } => planner.refuse("loops left unworked", "a tube works all of its loops"),
+            // They stay open on their needles, and the next row begins with them.
+            Step::Leave { .. } => {}
             Step::Color(_) => planner.approximate("a change of color", "one color is knit throughout"),
         }
         if planner.refused {

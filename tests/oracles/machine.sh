@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Machine programs of small shapes against two checkers that share no code with Picot: a simulator of a V-bed machine
+# (knitout_oracle.py) and a replay of k-code beside its Knitout (kcode_check.py).
+# Usage: machine.sh PICOT DIRECTORY; the directory keeps the Python environment. Status 77: no network or no Python.
+set -euo pipefail
+picot=$1 work=$2
+here=$(cd "$(dirname "$0")" && pwd)
+root=$here/../..
+mkdir -p "$work/out"
+if [ ! -x "$work/env/bin/python" ]; then
+    python3 -m venv "$work/env" || exit 77
+fi
+"$work/env/bin/pip" install -q knitout-interpreter==0.1.8 virtual-knitting-machine==0.0.31 knit-graphs==0.1.4 || exit 77
+cd "$work/out"
+for shape in "$root"/shapes/{ball,cord,capsule,egg,mushroom-stem,elbow}.toml; do
+    name=$(basename "$shape" .toml)
+    "$picot" -q build "$shape" --machine swg091n2 -o "$name.k"
+    "$picot" -q check "$name.k" --against "$shape"
+    "$work/env/bin/python" "$here/knitout_oracle.py" --strict --quiet "$name.k"
+    "$picot" -q build "$shape" --machine kniterate --set no-waste=true -o "$name-kniterate.k"
+    "$picot" -q build "$name-kniterate.k" -o "$name.kc"
+    "$picot" -q check "$name.kc" --against "$shape"
+    python3 "$here/kcode_check.py" "$name.kc" "$name-kniterate.k"
+done
