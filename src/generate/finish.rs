@@ -1,10 +1,11 @@
 //! From the sheet to the graph: nodes renumbered into the order in which the yarn makes them.
 
 use super::rows::Rows;
-use super::sheet::{Sheet, Work};
+use super::sheet::{Sheet, ShortRow, Work};
 use crate::ir::graph::Corners;
 use crate::ir::{Direction, Graph, Node, NodeId, Tile};
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// The graph of a finished sheet. `start` is the number of nodes of the first row.
 /// `turn` is the place around the tube where the helix began.
@@ -14,20 +15,22 @@ pub(crate) fn graph(sheet: &Sheet, rows: &Rows, start: usize, poles: [Option<DVe
     for id in 0..start {
         order.number(id as NodeId);
     }
-    let mut short_rows = sheet.short_rows.iter().peekable();
-    for work in &sheet.main {
+    let turns = Turns::new(sheet);
+    // What is still to be worked after a short row: the rest of the pass that it interrupted.
+    let mut passes = vec![sheet.main.iter()];
+    while let Some(pass) = passes.last_mut() {
+        let Some(work) = pass.next() else {
+            passes.pop();
+            continue;
+        };
         order.stitch(work, Direction::Forward);
-        while let Some(short_row) = short_rows.next_if(|short_row| short_row.after == work.top[1]) {
-            let last = order.next - 1;
-            order.turn(last, Direction::Back);
+        if let Some(short_row) = turns.after(work.top[1]) {
+            order.turn(Direction::Back);
             for work in short_row.back.iter().rev() {
                 order.stitch(work, Direction::Back);
             }
-            let last = order.next - 1;
-            order.turn(last, Direction::Forward);
-            for work in &short_row.forward {
-                order.stitch(work, Direction::Forward);
-            }
+            order.turn(Direction::Forward);
+            passes.push(short_row.forward.iter());
         }
     }
     let mut nodes = vec![Node { position: DVec3::ZERO, u: 0.0, tau: 0.0, v: 0.0 }; sheet.len()];
@@ -40,6 +43,33 @@ pub(crate) fn graph(sheet: &Sheet, rows: &Rows, start: usize, poles: [Option<DVe
         }
     }
     Graph { nodes, tiles: order.tiles, start: start as u32, pole: poles[0], end_pole: poles[1] }
+}
+
+/// The short rows by the node after which they turn.
+struct Turns<'s> {
+    sheet: &'s Sheet,
+    /// One look tells for most nodes that no short row follows.
+    turning: Vec<bool>,
+    by_node: BTreeMap<NodeId, usize>,
+}
+
+impl<'s> Turns<'s> {
+    fn new(sheet: &'s Sheet) -> Self {
+        let mut turning = vec![false; sheet.len()];
+        for short_row in &sheet.short_rows {
+            turning[short_row.after as usize] = true;
+        }
+        let by_node =
+            sheet.short_rows.iter().enumerate().map(|(k, short_row)| (short_row.after, k)).collect();
+        Self { sheet, turning, by_node }
+    }
+
+    fn after(&self, node: NodeId) -> Option<&'s ShortRow> {
+        if !self.turning[node as usize] {
+            return None;
+        }
+        self.by_node.get(&node).map(|k| &self.sheet.short_rows[*k])
+    }
 }
 
 struct Order {
@@ -79,7 +109,8 @@ impl Order {
     }
 
     /// The turn joins the last loop made with the next one.
-    fn turn(&mut self, last: NodeId, direction: Direction) {
+    fn turn(&mut self, direction: Direction) {
+        let last = self.next - 1;
         let (base, top) = (Corners::one(last), Corners::one(last + 1));
         self.tiles.push(Tile { stitch: None, direction, base, top });
     }

@@ -38,7 +38,7 @@ impl Default for Options {
             tolerance: 2.0 / 3.0,
             window: 4,
             window_sweeps: 6,
-            sweeps: 30,
+            sweeps: 16,
             squareness: 0.25,
             symmetric: true,
         }

@@ -36,6 +36,18 @@ const LAST_ROWS_PRICE: f64 = 0.4;
 /// Fewest loops of a batch that short rows may lie on.
 const LEAST_RING: usize = 9;
 
+/// Most short rows over each other in one round.
+const MOST_NESTED: u32 = 6;
+
+/// A stretch of the ring that short rows may lie on.
+struct Stretch {
+    /// Its place in the ring.
+    start: usize,
+    tops: Vec<NodeId>,
+    /// Where a run may begin or end: not between the two tops of one increase.
+    cut: Vec<bool>,
+}
+
 /// How the weaving ended.
 pub(crate) enum Outcome {
     /// All rows lie.
@@ -126,9 +138,7 @@ impl<'s> Weaver<'s> {
             let (tops, top_base) = self.work(&bases[..worked]);
             self.settle_window();
             if self.options.short_rows && tops.len() >= LEAST_RING {
-                if self.add_short_rows(&tops, &top_base) {
-                    self.settle_window();
-                }
+                self.fill_up(tops, &top_base);
             } else {
                 self.ring.extend_from_slice(&tops);
             }
@@ -316,36 +326,62 @@ impl<'s> Weaver<'s> {
         self.relaxer.relax(self.surface, &mut self.sheet, mark, effort, ends);
     }
 
-    /// Puts the new tops into the ring, with short rows over them where they lag behind. False when there is none.
-    fn add_short_rows(&mut self, tops: &[NodeId], top_base: &[NodeId]) -> bool {
-        let n = tops.len();
-        let size = n + self.ring.len();
-        let around = size as f64;
+    /// Puts the new tops into the ring, with short rows over them where they lag behind, and short rows over these where
+    /// even they do: a tight bend asks for many rows on its outer side.
+    fn fill_up(&mut self, tops: Vec<NodeId>, top_base: &[NodeId]) {
+        for end in &mut self.ends {
+            end.1 *= FADE;
+        }
+        self.ends.retain(|end| end.1 > 0.1);
+        let around = tops.len() + self.ring.len();
+        let cut = (0..tops.len()).map(|k| k > 0 && top_base[k] != top_base[k - 1]).collect();
+        let start = self.ring.len();
+        self.ring.extend_from_slice(&tops);
+        let mut stretches = vec![Stretch { start, tops, cut }];
+        for _ in 0..MOST_NESTED {
+            let mut raised = Vec::new();
+            // From right to left, so that places in the ring stay true.
+            for stretch in stretches.iter().rev() {
+                self.raise(stretch, around, &mut raised);
+            }
+            if raised.is_empty() {
+                break;
+            }
+            raised.reverse();
+            // Stretches to the left may have moved those to the right.
+            let mut moved = 0;
+            for stretch in &mut raised {
+                stretch.0.start = (stretch.0.start as isize + moved) as usize;
+                moved += stretch.1;
+            }
+            self.settle_window();
+            stretches = raised.into_iter().map(|(stretch, _)| stretch).collect();
+        }
+    }
+
+    /// Adds short rows over a stretch of the ring. What they raise goes to `raised`, rightmost first, with the number of
+    /// loops that the ring gained.
+    fn raise(&mut self, stretch: &Stretch, around: usize, raised: &mut Vec<(Stretch, isize)>) {
+        let tops = &stretch.tops;
+        let size = around as f64;
         let missing: Vec<f64> = tops.iter().map(|id| self.missing_at(*id) + EAGER).collect();
-        let extra: Vec<f64> = tops.iter().map(|id| self.stacked_price(*id, around)).collect();
-        let cut: Vec<bool> = (0..n).map(|k| k > 0 && top_base[k] != top_base[k - 1]).collect();
-        let least = (self.options.min_short_row as usize).min((0.4 * around) as usize).max(3);
-        let greatest = (self.options.max_short_row * around) as usize;
+        let extra: Vec<f64> = tops.iter().map(|id| self.stacked_price(*id, size)).collect();
+        let least = (self.options.min_short_row as usize).min((0.3 * size) as usize).max(3);
+        let greatest = (self.options.max_short_row * size) as usize;
         let (activation, tolerance) = (self.options.activation, self.options.tolerance);
         let mut rules = Rules::from_thresholds(activation, tolerance, least, greatest);
         if self.marks.len() as f64 > self.rows.count - 2.0 {
             rules.end_price *= LAST_ROWS_PRICE;
         }
-        for end in &mut self.ends {
-            end.1 *= FADE;
-        }
-        self.ends.retain(|end| end.1 > 0.1);
         let mut runs = Vec::new();
-        self.planner.solve(&missing, &extra, &cut, &rules, &mut runs);
-        let mut done = 0;
-        for run in &runs {
-            self.ring.extend_from_slice(&tops[done..run.start]);
-            let raised = self.short_row(tops, run.clone());
-            self.ring.extend_from_slice(&raised);
-            done = run.end;
+        self.planner.solve(&missing, &extra, &stretch.cut, &rules, &mut runs);
+        for run in runs.iter().rev() {
+            let (open, cut) = self.short_row(tops, run.clone());
+            let start = stretch.start + run.start;
+            self.ring.splice(start..start + run.len(), open.iter().copied());
+            let gained = open.len() as isize - run.len() as isize;
+            raised.push((Stretch { start, tops: open, cut }, gained));
         }
-        self.ring.extend_from_slice(&tops[done..]);
-        !runs.is_empty()
     }
 
     /// Extra price of a run end at a node: short-row ends right over each other make a visible seam.
@@ -361,13 +397,21 @@ impl<'s> Weaver<'s> {
             .sum()
     }
 
-    /// Adds one short row over a run of tops: back over it, forward over that. Returns the loops now open there.
-    fn short_row(&mut self, tops: &[NodeId], run: Range<usize>) -> Vec<NodeId> {
+    /// Adds one short row over a run of tops: back over it, forward over that. Returns the loops now open there, and where
+    /// among them another run may begin or end.
+    fn short_row(&mut self, tops: &[NodeId], run: Range<usize>) -> (Vec<NodeId>, Vec<bool>) {
         let (first, last) = (run.start, run.end - 1);
         self.ends.push((self.sheet.v[tops[first] as usize], 1.0));
         self.ends.push((self.sheet.v[tops[last] as usize], 1.0));
         let (back_tops, back) = self.pass(&tops[run], TileKind::TurnRight);
         let (open, forward) = self.pass(&back_tops, TileKind::TurnLeft);
+        let mut cut = Vec::with_capacity(open.len());
+        for work in &forward {
+            cut.push(!cut.is_empty());
+            if work.top[0] != work.top[1] {
+                cut.push(false);
+            }
+        }
         self.sheet.short_rows.push(ShortRow { after: tops[last], back, forward });
         // The yarn goes down a step behind the run, and the fabric goes up one before it.
         let (before, end, next) = (tops[first - 1], open[open.len() - 1], tops[last + 1]);
@@ -376,7 +420,7 @@ impl<'s> Weaver<'s> {
         let arrival = self.sheet.arrival[next as usize] as usize;
         self.sheet.edges[arrival] = Edge { a: end, b: next, kind: EdgeKind::Step };
         self.sheet.edges.push(Edge { a: before, b: open[0], kind: EdgeKind::Step });
-        open
+        (open, cut)
     }
 
     /// One pass of a short row over `bases`, from left to right whatever its direction of work.
