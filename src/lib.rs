@@ -50,6 +50,7 @@ pub mod settings;
 pub mod shape;
 
 use diag::{Code, Diagnostic, Sink, Source, Sources};
+use frontend::crochet::{self, Conventions};
 use frontend::{Input, Reader};
 use generate::capunaman::Baseline;
 use ir::{Finish, Gauge, Pattern, Program};
@@ -63,6 +64,8 @@ pub struct Options {
     pub gauge: Option<Gauge>,
     /// Options of the generator.
     pub generate: generate::Options,
+    /// Conventions of written patterns; what a file declares itself comes first.
+    pub conventions: Conventions,
 }
 
 /// From an opened file to a program, ready for [`ir::verify::verify`]; `None` when the sink has the reason.
@@ -108,7 +111,12 @@ pub fn read(
 ) -> Option<Input> {
     sink.stage("read");
     let errors = sink.errors();
-    let mut input = (reader.read)(source, sources, sink).filter(|_| sink.errors() == errors)?;
+    let input = if reader.name == crochet::READER.name {
+        crochet::read(source, &options.conventions, sink)
+    } else {
+        (reader.read)(source, sources, sink)
+    };
+    let mut input = input.filter(|_| sink.errors() == errors)?;
     match &mut input {
         Input::Shape(shape) => shape.gauge = options.gauge.unwrap_or(shape.gauge),
         Input::Program(program) => program.gauge = options.gauge.or(program.gauge),

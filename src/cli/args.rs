@@ -50,6 +50,8 @@ pub(crate) enum Command {
     Build(Build),
     /// Check patterns and machine programs
     Check(Check),
+    /// Rewrite written patterns in canonical form
+    Fmt(Fmt),
     /// Measure how close the stitches come to the shape
     Measure(Measure),
     /// Time the compiler; with --paper, set it beside the tables of the paper
@@ -111,6 +113,8 @@ pub(crate) struct Build {
 #[command(after_help = "\
 Examples:
   picot check ball.xml sleeve.k
+  picot check frog.txt --set star-times=more      with a convention of this maker
+  picot check --fix frog.txt                      apply the repairs that are beyond doubt
   picot check sleeve.kc --machine kniterate --against sleeve.toml")]
 pub(crate) struct Check {
     /// Written patterns, Picot XML, `.k` or `.kc`; `-` is stdin
@@ -122,6 +126,21 @@ pub(crate) struct Check {
     /// A shape or pattern whose loops a machine program must make, one by one
     #[arg(long, value_name = "INPUT")]
     pub(crate) against: Option<String>,
+    /// Apply the repairs of written patterns that are beyond doubt
+    #[arg(long)]
+    pub(crate) fix: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Fmt {
+    /// Written patterns; `-` is stdin to stdout
+    #[arg(required = true, value_name = "FILE")]
+    pub(crate) files: Vec<String>,
+    /// Write nothing; name the files that would change, and exit with 1 if there are any
+    #[arg(long)]
+    pub(crate) check: bool,
     #[command(flatten)]
     pub(crate) reading: Reading,
 }
@@ -207,6 +226,8 @@ pub(crate) enum Topic {
     Machines,
     /// Diagnostic codes.
     Codes,
+    /// Conventions of written patterns.
+    Conventions,
 }
 
 #[derive(Debug, Args)]

@@ -1,6 +1,7 @@
 //! `picot check`: what is wrong with patterns and machine programs. Writes nothing but its findings.
 
 use super::args::{Check, CheckFormat};
+use super::files::Place;
 use super::plan::reader_of;
 use super::progress::Watch;
 use super::report::{self, Report};
@@ -8,12 +9,14 @@ use super::route::{Routed, route};
 use super::{Failure, Status, files, print, print_json};
 use picot::diag::position::Positions;
 use picot::diag::render::{json::object, short::short};
-use picot::diag::{Diagnostic, Severity, Sink, Sources};
+use picot::diag::{Diagnostic, Severity, Sink, Source, Sources};
 use picot::frontend::Input;
+use picot::frontend::crochet::{self, Conventions, Document, Round};
 use picot::ir::machine::{self, Machine};
 use picot::ir::{Direction, Part, Program, Row, Step, verify::verify};
 use picot::lower::machine::{Options, validate::validate};
 use serde_json::{Value, json};
+use std::path::PathBuf;
 
 pub(crate) fn run(arguments: &Check, report: Report) -> Result<Status, Failure> {
     let routed = route(&arguments.reading, &[])?;
@@ -82,6 +85,14 @@ fn check(
     sink: &mut Sink<'_>,
 ) -> Result<Vec<Value>, Failure> {
     let reader = reader_of(path, arguments.reading.from.as_deref())?;
+    if reader.name == crochet::READER.name && arguments.against.is_none() {
+        let conventions = &routed.options.conventions;
+        if arguments.fix {
+            mend(path, conventions)?;
+        }
+        let source = files::open(sources, path, stdin)?;
+        return Ok(written(&source, conventions, sink));
+    }
     let source = files::open(sources, path, stdin)?;
     let input = picot::read(&source, reader, &routed.options, sources, sink);
     if let (Some(shape), Some(Input::Program(_) | Input::Shape(_))) = (&arguments.against, &input) {
@@ -107,6 +118,43 @@ fn check(
         }
         Some(Input::Shape(_)) | None => Ok(Vec::new()),
     }
+}
+
+/// Checks a written pattern row by row; its rounds are counted as far as they can be read.
+fn written(source: &Source, conventions: &Conventions, sink: &mut Sink<'_>) -> Vec<Value> {
+    let Some(document) = Document::parse(source, conventions.language, sink) else { return Vec::new() };
+    let checked = document.check(conventions, sink);
+    if let Some(program) = &checked.program {
+        verify(program, sink);
+    }
+    let round = |round: &Round| {
+        json!({ "label": round.label, "first": round.first, "last": round.last, "consumes": round.consumes,
+            "produces": round.produces, "stated": round.stated })
+    };
+    let parts = checked.parts.iter();
+    parts
+        .map(|part| {
+            json!({ "name": part.name, "rounds": part.rounds.iter().map(round).collect::<Vec<Value>>() })
+        })
+        .collect()
+}
+
+/// Applies the certain fixes of a written pattern to its file.
+fn mend(path: &str, conventions: &Conventions) -> Result<(), Failure> {
+    if path == "-" {
+        return Err(Failure::usage("`--fix` needs a file that it can change").help("name the file"));
+    }
+    let mut sources = Sources::new(&files::load);
+    let source = files::open(&mut sources, path, &[])?;
+    let Ok(text) = source.text() else { return Ok(()) };
+    let (mended, done) = crochet::mend(path, text, conventions);
+    if !done.is_empty() {
+        files::write_all(&[(Place::File(PathBuf::from(path)), mended.into_bytes())])?;
+        for title in done {
+            report::print(&format!("{path}: {title}\n"));
+        }
+    }
+    Ok(())
 }
 
 fn file(path: &str, parts: &[Value], found: &[Diagnostic], sources: &Sources<'_>) -> Result<Value, Failure> {

@@ -5,6 +5,7 @@ use super::{Failure, Status, print, print_json};
 use picot::backends::TARGETS;
 use picot::diag::Code;
 use picot::frontend::READERS;
+use picot::frontend::crochet::Setting;
 use picot::ir::Kind;
 use picot::ir::machine::{MACHINES, profile::FIELDS};
 use picot::passes::PASSES;
@@ -81,6 +82,15 @@ fn rows(topic: Topic) -> (&'static str, Vec<Value>) {
                 .chain(FIELDS.iter().map(|field| json!({ "field": field.key, "about": field.about })))
                 .collect(),
         ),
+        Topic::Conventions => (
+            "conventions",
+            Setting::ALL
+                .iter()
+                .map(|setting| {
+                    json!({ "name": setting.name(), "values": setting.values(), "about": setting.about().trim() })
+                })
+                .collect(),
+        ),
         Topic::Codes => (
             "codes",
             Code::ALL
@@ -112,5 +122,6 @@ fn cells(topic: Topic, row: &Value) -> Vec<String> {
         Topic::Machines if row["name"].is_string() => vec![text("name"), "built in".to_owned()],
         Topic::Machines => vec![text("field"), text("about")],
         Topic::Codes => vec![text("code"), text("title")],
+        Topic::Conventions => vec![text("name"), text("values"), text("about")],
     }
 }

@@ -7,6 +7,7 @@ mod check;
 mod completions;
 mod explain;
 mod files;
+mod fmt;
 mod list;
 mod man;
 mod measure;
@@ -106,6 +107,7 @@ pub(crate) fn main() -> ExitCode {
     let outcome = match &cli.command {
         Command::Build(arguments) => build::run(arguments, report),
         Command::Check(arguments) => check::run(arguments, report),
+        Command::Fmt(arguments) => fmt::run(arguments, report),
         Command::Measure(arguments) => measure::run(arguments, report),
         Command::Bench(arguments) => bench::run(arguments, report),
         Command::List(arguments) => list::run(arguments),

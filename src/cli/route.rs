@@ -4,6 +4,7 @@ use super::args::Reading;
 use super::{Failure, files};
 use picot::backends::{TARGETS, Target};
 use picot::diag::{Sink, Sources, did_you_mean};
+use picot::frontend::crochet::{Conventions, Setting};
 use picot::generate;
 use picot::ir::machine::{MACHINES, Machine};
 
@@ -49,6 +50,7 @@ fn machine(named: &str) -> Result<(Machine, toml::Value), Failure> {
 pub(crate) fn route(reading: &Reading, targets: &[&'static Target]) -> Result<Routed, Failure> {
     let generator = picot::settings::keys::<generate::Options>();
     let mut general = toml::Table::new();
+    let mut conventions = Conventions::default();
     let mut tables = vec![toml::Table::new(); targets.len()];
     for (key, value) in &reading.set {
         let mut known = false;
@@ -65,6 +67,13 @@ pub(crate) fn route(reading: &Reading, targets: &[&'static Target]) -> Result<Ro
                 target.configure(alone).map_err(|error| wrong_value(key, &error))?;
                 table.insert(key.clone(), value.clone());
             }
+        }
+        let convention = key == "lang" || Setting::ALL.iter().any(|setting| setting.name() == key);
+        if convention && !known {
+            known = true;
+            let value = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+            let declared = conventions.set(key, &value);
+            declared.map_err(|right| Failure::usage(format!("--set {key}={value}: expected {right}")))?;
         }
         if !known {
             return Err(unknown(key, generator, targets));
@@ -89,7 +98,7 @@ pub(crate) fn route(reading: &Reading, targets: &[&'static Target]) -> Result<Ro
         );
     }
     let machine = machine.map(|(machine, _)| machine);
-    Ok(Routed { options: picot::Options { gauge: reading.gauge, generate }, tables, machine })
+    Ok(Routed { options: picot::Options { gauge: reading.gauge, generate, conventions }, tables, machine })
 }
 
 fn wrong_value(key: &str, error: &toml::de::Error) -> Failure {

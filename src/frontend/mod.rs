@@ -1,5 +1,6 @@
 //! Readers: from bytes to a value, with spans and diagnostics. A reader is one file and one line of [`READERS`].
 
+pub mod crochet;
 pub mod kcode;
 pub mod knitout;
 mod shape;
@@ -36,7 +37,8 @@ pub struct Reader {
 }
 
 /// Every reader.
-pub static READERS: &[Reader] = &[shape::READER, kcode::READER, knitout::READER, xml::READER];
+pub static READERS: &[Reader] =
+    &[crochet::READER, shape::READER, kcode::READER, knitout::READER, xml::READER];
 
 /// The reader with this name.
 pub fn reader(name: &str) -> Option<&'static Reader> {

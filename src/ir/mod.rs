@@ -13,6 +13,7 @@
 //!   first; after [`Direction::Forward`] the hook goes on in working direction, over the loops of the back pass first.
 //!   A turn itself neither works nor makes a loop.
 
+pub mod dialect;
 pub mod dump;
 pub mod exchange;
 pub mod graph;
@@ -22,6 +23,7 @@ pub mod stitch;
 pub mod verify;
 pub mod yarn;
 
+pub use dialect::{Language, Terms};
 pub use graph::{Graph, Node, NodeId, Tile};
 pub use pattern::{Block, Direction, Finish, Op, Part, PartId, Pattern, Row, Segment, Start, Step};
 pub use stitch::{Entry, Kind, Stitch};

@@ -264,6 +264,17 @@ impl Block {
         self.ops.push(op);
         self.spans.push(span);
     }
+    /// Takes the operations from `at` on out of the block.
+    #[must_use]
+    pub fn split_off(&mut self, at: usize) -> Self {
+        let at = at.min(self.ops.len());
+        Self { ops: self.ops.split_off(at), spans: self.spans.split_off(at) }
+    }
+    /// Adds all operations of another block.
+    pub fn append(&mut self, mut other: Self) {
+        self.ops.append(&mut other.ops);
+        self.spans.append(&mut other.spans);
+    }
     /// True when nothing is worked.
     pub fn is_empty(&self) -> bool {
         self.ops.is_empty()

@@ -1,0 +1,583 @@
+//! Parsers for clauses: stitches, groups, stars, and what steers them.
+
+use super::lex::Tok;
+use super::parse::{FaultKind, Res, Tokens, glued, int, key, name, separator, unit};
+use super::place::{fill, join, multiplier, over, place, times_mark};
+use super::syntax::{Clause, Counts, Node, Num, Op, Place, Sep, Shape, Times, Word};
+use super::words::Key;
+use crate::ir::{Direction, Entry, Kind, MAX_NESTING};
+use nom::branch::alt;
+use nom::combinator::{map, opt};
+use nom::sequence::preceded;
+use nom::{Err, Parser};
+
+/// Clauses with what separates them, up to what is no clause.
+pub(crate) fn body(input: Tokens<'_>) -> Res<'_, Vec<Node>> {
+    let mut nodes: Vec<Node> = Vec::new();
+    let (mut input, mut back) = (input, false);
+    loop {
+        let outer = input.depth == 0;
+        if outer && !nodes.is_empty() && super::row::count_ahead(input, back) {
+            break;
+        }
+        let (start, sep) = match separator(input) {
+            Ok((rest, sep)) if !nodes.is_empty() => (rest, sep),
+            _ => (input, Sep::None),
+        };
+        if start.is_empty() || (outer && sep != Sep::None && super::row::count_ahead(start, back)) {
+            break;
+        }
+        // Two runs without anything between them are a slip of the pen.
+        let run = matches!(start.tok(0), Some(Tok::Int(_) | Tok::Stitch(_)));
+        if sep == Sep::None && run && matches!(nodes.last(), Some(Node { what: Clause::Op(_), .. })) {
+            break;
+        }
+        match clause(start) {
+            Ok((rest, what)) => {
+                match what {
+                    Clause::Mark(Direction::Back) => back = true,
+                    Clause::Mark(Direction::Forward) => back = false,
+                    _ => {}
+                }
+                nodes.push(Node { at: start.until(rest), sep, what });
+                input = rest;
+            }
+            Err(Err::Error(())) if !nodes.is_empty() => break,
+            Err(error) => return Err(error),
+        }
+    }
+    Ok((input, nodes))
+}
+
+fn clause(input: Tokens<'_>) -> Res<'_, Clause> {
+    let simple = |what| Ok((input.skip(1), what));
+    match input.tok(0) {
+        Some(Tok::Key(word)) => match word {
+            Key::Open(_) => group(input, None),
+            Key::Star => star(input),
+            Key::Stop => simple(Clause::Stop),
+            Key::Back => simple(Clause::Mark(Direction::Back)),
+            Key::Fwd => simple(Clause::Mark(Direction::Forward)),
+            Key::Turn => simple(Clause::Turn),
+            Key::Fo => simple(Clause::FastenOff),
+            Key::Closed => simple(Clause::DrawShut),
+            Key::Pm => simple(Clause::Marker),
+            Key::Mr => ring(input),
+            Key::Ch => chain(input),
+            Key::Sk => skip(input),
+            Key::Leave => leave(input),
+            Key::Hold => hold(input),
+            Key::Join => map(join, |ring| Clause::Join { ring }).parse(input),
+            Key::With | Key::Change => color(input.skip(1)),
+            Key::Do
+                if input.key(1) == Some(Key::Not) && matches!(input.key(2), Some(Key::Turn | Key::Join)) =>
+            {
+                Ok((input.skip(3), Clause::DoNot))
+            }
+            Key::On if input.key(1) == Some(Key::OtherWord) && input.key(2) == Some(Key::Side) => {
+                let (rest, _) = opt(key(Key::Ch)).parse(input.skip(3))?;
+                Ok((rest, Clause::OtherSide))
+            }
+            Key::Rep if !input.in_star => repeat_all(input),
+            Key::Blo | Key::Flo => Ok(loops(input)),
+            Key::In if matches!(input.key(1), Some(Key::Blo | Key::Flo)) => Ok(loops(input.skip(1))),
+            Key::In if matches!(input.tok(1), Some(Tok::Letter | Tok::Color(_))) => color(input.skip(1)),
+            Key::In => map(preceded(key(Key::In), place), Clause::Again).parse(input),
+            Key::Each => every_nth(input),
+            _ => op(input),
+        },
+        Some(Tok::Int(_)) => {
+            let after = input.skip(1);
+            if after.key(0) == Some(Key::Ch) && !matches!(after.key(1), Some(Key::Hyphen | Key::Sp)) {
+                return chain(input);
+            }
+            let bracket = match times_mark(after) {
+                Ok((rest, ())) => rest,
+                Err(_) if after.key(0) == Some(Key::Star) => after.skip(1),
+                Err(_) => after,
+            };
+            if matches!(bracket.key(0), Some(Key::Open(_))) && !is_ring_tag(bracket) {
+                let (_, n) = int(input)?;
+                return group(bracket, Some(n));
+            }
+            op(input)
+        }
+        Some(_) => {
+            if let Ok((rest, ring)) = join(input) {
+                return Ok((rest, Clause::Join { ring }));
+            }
+            op(input)
+        }
+        None => input.fail("an instruction"),
+    }
+}
+
+/// `(magic circle)` behind stitches.
+fn is_ring_tag(input: Tokens<'_>) -> bool {
+    matches!(input.key(0), Some(Key::Open(b'(')))
+        && input.key(1) == Some(Key::Mr)
+        && matches!(input.key(2), Some(Key::Close(b'(')))
+}
+
+fn group(input: Tokens<'_>, before: Option<Num>) -> Res<'_, Clause> {
+    let Some(Key::Open(brace)) = input.key(0) else { return input.fail("a bracket") };
+    let open = input.at(0);
+    if u32::from(input.depth) >= MAX_NESTING {
+        return input.stop(FaultKind::Deep(open));
+    }
+    let inner = Tokens { depth: input.depth + 1, in_star: false, ..input.skip(1) };
+    let (rest, nodes) = match body(inner) {
+        Ok(parsed) => parsed,
+        Err(Err::Error(())) if !closes(inner, brace) => return input.stop(FaultKind::Unbalanced(open)),
+        Err(error) => return Err(error),
+    };
+    let rest = match rest.key(0) {
+        Some(Key::Comma | Key::Semi | Key::Dot) => rest.skip(1),
+        _ => rest,
+    };
+    if rest.key(0) != Some(Key::Close(brace)) {
+        if !closes(rest, brace) {
+            return input.stop(FaultKind::Unbalanced(open));
+        }
+        return rest.fail("the closing bracket");
+    }
+    let rest = Tokens { depth: input.depth, in_star: input.in_star, ..rest.skip(1) };
+    let (rest, after) = suffix(rest, before.is_some())?;
+    let times = match (before, after) {
+        (Some(_), Times::N(second) | Times::More(second) | Times::Rep(second)) => {
+            return rest.stop(FaultKind::TwoMultipliers(second.at));
+        }
+        (Some(n), Times::Unsaid) => Times::N(n),
+        (Some(_), Times::Fill(_) | Times::Place(_)) => return rest.stop(FaultKind::TwoMultipliers(open)),
+        (None, times) => times,
+    };
+    Ok((rest, Clause::Group { brace, body: nodes, times }))
+}
+
+/// True when a bracket of this kind is closed before the line ends.
+fn closes(input: Tokens<'_>, brace: u8) -> bool {
+    let mut depth = 0_usize;
+    for token in input.rest {
+        match token.tok {
+            Tok::Key(Key::Open(other)) if other == brace => depth += 1,
+            Tok::Key(Key::Close(other)) if other == brace => {
+                if depth == 0 {
+                    return true;
+                }
+                depth -= 1;
+            }
+            _ => {}
+        }
+    }
+    false
+}
+
+/// What may stand behind a closing bracket.
+fn suffix(input: Tokens<'_>, counted: bool) -> Res<'_, Times> {
+    // In a star, `*` before a number multiplies a bracket unless `times` follows, which closes the star.
+    let starred = input.in_star
+        && input.key(0) == Some(Key::Star)
+        && matches!(input.tok(1), Some(Tok::Int(_)))
+        && !matches!(input.key(2), Some(Key::TimesWord | Key::More));
+    if starred {
+        let (rest, n) = int(input.skip(1))?;
+        return Ok((rest, Times::N(n)));
+    }
+    match multiplier(input) {
+        Ok(parsed) => return Ok(parsed),
+        Err(Err::Error(())) => {}
+        Err(error) => return Err(error),
+    }
+    if let Ok((rest, end)) = fill(input) {
+        return Ok((rest, Times::Fill(end)));
+    }
+    if let Ok((after, _)) = separator(input)
+        && matches!(after.key(0), Some(Key::Rep))
+        && !(input.in_star || counted)
+    {
+        match alt((map(fill, Times::Fill), multiplier)).parse(after) {
+            Ok(parsed) => return Ok(parsed),
+            Err(Err::Error(())) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    if input.key(0) == Some(Key::In) || input.key(0) == Some(Key::Each) {
+        let (rest, _) = opt(key(Key::In)).parse(input)?;
+        if let Ok((rest, place)) = place(rest) {
+            return Ok((rest, Times::Place(place)));
+        }
+    }
+    Ok((input, Times::Unsaid))
+}
+
+fn star(input: Tokens<'_>) -> Res<'_, Clause> {
+    let open = input.at(0);
+    let repeats = separator(input.skip(1)).is_ok_and(|(rest, _)| rest.key(0) == Some(Key::Rep));
+    if input.in_star && repeats {
+        return input.fail("the end of the star");
+    }
+    if input.in_star
+        && matches!(input.tok(1), None | Some(Tok::Int(_) | Tok::Key(Key::Times | Key::Rep | Key::Around)))
+    {
+        let number = matches!(input.tok(1), Some(Tok::Int(_)));
+        if !number || matches!(input.key(2), Some(Key::TimesWord | Key::More | Key::Times)) || input.glued(0)
+        {
+            return input.fail("the end of the star");
+        }
+    }
+    if u32::from(input.depth) >= MAX_NESTING {
+        return input.stop(FaultKind::Deep(open));
+    }
+    let inner = Tokens { depth: input.depth + 1, in_star: true, ..input.skip(1) };
+    let inner = separator(inner).map_or(inner, |(rest, _)| rest);
+    let (rest, nodes) = body(inner)?;
+    let outer = Tokens { depth: input.depth, in_star: input.in_star, ..rest };
+    let (rest, times) = match star_end(outer) {
+        Ok(parsed) => parsed,
+        Err(Err::Error(())) if outer.is_empty() || super::row::count_ahead(outer, false) => {
+            return outer.stop(FaultKind::Star(open));
+        }
+        Err(error) => return Err(error),
+    };
+    let (rest, to_stop) = opt(stop_end).parse(rest)?;
+    Ok((rest, Clause::Star { body: nodes, times, to_stop: to_stop.is_some() }))
+}
+
+/// `* x 7`, `* 7 times`, `; rep from * around`, `* rep from * to * across`.
+fn star_end(input: Tokens<'_>) -> Res<'_, Times> {
+    let number = |input| alt((multiplier, map(fill, Times::Fill))).parse(input);
+    let before = if input.key(0) == Some(Key::Star) { input } else { skip_end(input) };
+    if before.key(0) == Some(Key::Star) {
+        let rest = before.skip(1);
+        // `*3 sc, inc* 7` and `*3 sc, inc*7`.
+        if let (Some(Tok::Int(_)), false) =
+            (rest.tok(0), matches!(rest.key(1), Some(Key::TimesWord | Key::More | Key::Times)))
+        {
+            let (rest, n) = int(rest)?;
+            return Ok((rest, Times::N(n)));
+        }
+        match number(rest) {
+            Ok((rest, times)) => {
+                let from = rest.key(0) == Some(Key::From);
+                if !from {
+                    return Ok((rest, times));
+                }
+            }
+            Err(Err::Error(())) => {}
+            Err(error) => return Err(error),
+        }
+        return rep_from(skip_end(rest));
+    }
+    rep_from(before)
+}
+
+fn skip_end(input: Tokens<'_>) -> Tokens<'_> {
+    separator(input).map_or(input, |(rest, _)| rest)
+}
+
+/// `rep from * 4 more times`.
+fn rep_from(input: Tokens<'_>) -> Res<'_, Times> {
+    let (rest, _) = key(Key::Rep)(input)?;
+    let (rest, _) = opt(key(Key::From)).parse(rest)?;
+    let (rest, star) = opt(key(Key::Star)).parse(rest)?;
+    let (rest, _) = opt((key(Key::To), key(Key::Star))).parse(rest)?;
+    let said = star.is_some();
+    let (rest, times) =
+        alt((multiplier, map(fill, Times::Fill))).parse(rest).or_else(|error| match error {
+            Err::Error(()) if said => rest.fail("how often to repeat"),
+            error => Err(error),
+        })?;
+    Ok((rest, if let (Times::N(n), true) = (times, said) { Times::Rep(n) } else { times }))
+}
+
+/// `, ending last rep at **`.
+fn stop_end(input: Tokens<'_>) -> Res<'_, ()> {
+    let (rest, _) = opt(separator).parse(input)?;
+    let (rest, _) = (key(Key::End), opt(key(Key::Last)), opt(key(Key::Rep))).parse(rest)?;
+    let (rest, _) = (opt(key(Key::AtWord)), key(Key::Stop)).parse(rest)?;
+    Ok((rest, ()))
+}
+
+fn repeat_all(input: Tokens<'_>) -> Res<'_, Clause> {
+    if matches!(input.key(1), Some(Key::From | Key::Star)) {
+        return input.stop(FaultKind::Star(input.at(0)));
+    }
+    let (rest, _) = fill(input)?;
+    Ok((rest, Clause::RepeatAll))
+}
+
+/// `blo`, alone or before stitches.
+fn loops(at: Tokens<'_>) -> (Tokens<'_>, Clause) {
+    let entry = entry(at.key(0));
+    if let Ok((rest, Clause::Op(mut op))) = op(at.skip(1)) {
+        op.entry = Some(entry);
+        return (rest, Clause::Op(op));
+    }
+    (at.skip(1), Clause::Loop(entry))
+}
+
+fn entry(key: Option<Key>) -> Entry {
+    if key == Some(Key::Flo) { Entry::Front } else { Entry::Back }
+}
+
+fn color(input: Tokens<'_>) -> Res<'_, Clause> {
+    match input.tok(0) {
+        Some(Tok::Letter | Tok::Color(_) | Tok::Word | Tok::Quoted | Tok::Key(Key::Mr)) => {
+            Ok((input.skip(1), Clause::Color(input.at(0))))
+        }
+        _ => input.fail("a color"),
+    }
+}
+
+fn ring(input: Tokens<'_>) -> Res<'_, Clause> {
+    let rest = input.skip(1);
+    if input.depth == 0 && super::row::count_ahead(rest, false) {
+        return Ok((rest, Clause::Ring { n: None, word: None }));
+    }
+    let after = separator(rest).map_or(rest, |(after, _)| after);
+    let (after, _) = opt(key(Key::With)).parse(after)?;
+    let number_first = |input| (int, opt(word)).parse(input);
+    let word_first = |input| (word, int).map(|(word, n)| (n, Some(word))).parse(input);
+    if let Ok((end, (n, word))) = alt((number_first, word_first)).parse(after)
+        && !matches!(end.key(0), Some(Key::In | Key::Ch | Key::Hyphen | Key::Times))
+    {
+        return Ok((end, Clause::Ring { n: Some(n), word }));
+    }
+    Ok((rest, Clause::Ring { n: None, word: None }))
+}
+
+fn chain(input: Tokens<'_>) -> Res<'_, Clause> {
+    let (rest, n) = if let Some(Tok::Int(_)) = input.tok(0) {
+        let (rest, n) = int(input)?;
+        (rest.skip(1), Some(n))
+    } else {
+        let rest = if input.key(1) == Some(Key::Hyphen) { input.skip(2) } else { input.skip(1) };
+        opt(int).parse(rest)?
+    };
+    let (rest, counts) = opt(counts).parse(rest)?;
+    Ok((rest, Clause::Chain { n, counts: counts.unwrap_or(Counts::Unsaid) }))
+}
+
+/// `(counts as dc)`, `(counts as 3 sts)`, `(does not count)`.
+fn counts(input: Tokens<'_>) -> Res<'_, Counts> {
+    let (rest, _) = key(Key::Open(b'('))(input)?;
+    if rest.key(0) == Some(Key::Does) {
+        let (mut rest, _) = (key(Key::Does), key(Key::Not), key(Key::Count)).parse(rest)?;
+        if rest.key(0) == Some(Key::As) {
+            rest = unit(opt(int).parse(rest.skip(1))?.0)?.0;
+        }
+        let (rest, _) = key(Key::Close(b'('))(rest)?;
+        return Ok((rest, Counts::Not));
+    }
+    let (rest, _) = (key(Key::Counts), key(Key::As)).parse(rest)?;
+    let (rest, counts) = if let Some(Tok::Stitch(spelled)) = rest.tok(0) {
+        (rest.skip(1), Counts::As(spelled))
+    } else {
+        let (rest, n) = int(rest)?;
+        if let (1, Some(Tok::Stitch(spelled))) = (n.value, rest.tok(0)) {
+            (rest.skip(1), Counts::As(spelled))
+        } else {
+            (unit(rest)?.0, Counts::Stitches(n))
+        }
+    };
+    let (rest, _) = opt((key(Key::And), key(Key::Ch), opt(key(Key::Hyphen)), int)).parse(rest)?;
+    let (rest, _) = key(Key::Close(b'('))(rest)?;
+    Ok((rest, counts))
+}
+
+fn skip(input: Tokens<'_>) -> Res<'_, Clause> {
+    let mut rest = input.skip(1);
+    while matches!(rest.key(0), Some(Key::Next | Key::First | Key::Last | Key::Over)) {
+        rest = rest.skip(1);
+    }
+    if matches!(rest.key(0), Some(Key::Ch | Key::Sp))
+        && let Ok((end, Place::Space(_))) = place(rest)
+    {
+        return Ok((end, Clause::Skip { n: None, space: true }));
+    }
+    let (rest, n) = opt(int).parse(rest)?;
+    let (rest, _) = opt(unit).parse(rest)?;
+    Ok((rest, Clause::Skip { n, space: false }))
+}
+
+fn leave(input: Tokens<'_>) -> Res<'_, Clause> {
+    let (rest, _) = opt(key(Key::Last)).parse(input.skip(1))?;
+    let (rest, n) = int(rest)?;
+    let (rest, _) = opt(unit).parse(rest)?;
+    let (rest, _) = key(Key::Unworked)(rest)?;
+    Ok((rest, Clause::Leave { n }))
+}
+
+fn hold(input: Tokens<'_>) -> Res<'_, Clause> {
+    let (rest, (n, (), _, name)) = (int, unit, key(Key::For), name).parse(input.skip(1))?;
+    Ok((rest, Clause::Hold { n, name }))
+}
+
+/// German: `jede 4. M verdoppeln`.
+fn every_nth(input: Tokens<'_>) -> Res<'_, Clause> {
+    let (rest, place) = place(input)?;
+    let Place::EveryNth(_) = place else { return input.fail("a stitch") };
+    let (rest, word) = word(rest)?;
+    let op = Op { entry: None, back: None, n: None, word, place: Some(place), evenly: false, hue: None };
+    Ok((rest, Clause::Op(Box::new(op))))
+}
+
+/// A stitch name with its shape.
+pub(crate) fn word(input: Tokens<'_>) -> Res<'_, Word> {
+    let at = input.at(0);
+    let finish = |rest, base, shape| Ok((rest, Word { base, shape, at: input.until(rest) }));
+    match input.tok(0) {
+        Some(Tok::Stitch(spelled)) => {
+            let rest = input.skip(1);
+            if let (Some(Tok::Int(_)), Some(Key::Tog)) = (rest.tok(0), rest.key(1)) {
+                let (rest, n) = int(rest)?;
+                return finish(rest.skip(1), Some(spelled), Shape::Tog(n));
+            }
+            let after = if rest.key(0) == Some(Key::Hyphen) { rest.skip(1) } else { rest };
+            if let Some(shape @ (Key::Inc | Key::Dec | Key::Invdec)) = after.key(0) {
+                let (rest, n) = opt(glued).parse(after.skip(1))?;
+                let shape = if shape == Key::Inc { Shape::Inc(n) } else { Shape::Dec(n) };
+                return finish(rest, Some(spelled), shape);
+            }
+            if after.key(0) == Some(Key::Shell) {
+                let (rest, n) = glued(after.skip(1))?;
+                return finish(rest, Some(spelled), Shape::Inc(Some(n)));
+            }
+            Ok((rest, Word { base: Some(spelled), shape: Shape::Plain, at }))
+        }
+        Some(Tok::Key(Key::Inc)) => {
+            let (rest, n) = opt(glued).parse(input.skip(1))?;
+            finish(rest, None, Shape::Inc(n))
+        }
+        Some(Tok::Key(Key::Dec)) => {
+            let (rest, n) = opt(glued).parse(input.skip(1))?;
+            finish(rest, None, Shape::Dec(n))
+        }
+        Some(Tok::Key(Key::Invdec)) => finish(input.skip(1), None, Shape::Dec(None)),
+        Some(Tok::Key(Key::Even)) => finish(input.skip(1), None, Shape::Even),
+        Some(Tok::Def(def)) => finish(input.skip(1), None, Shape::Def(def)),
+        Some(Tok::Shaped(kind, works, makes)) => {
+            finish(input.skip(1), None, Shape::Letter(kind, works, makes))
+        }
+        _ => input.fail("a stitch"),
+    }
+}
+
+/// Kinds that a stitch name before them only describes: `5-dc bobble`.
+fn is_bunch(tok: Option<Tok>) -> bool {
+    let bunch = [Kind::Bobble, Kind::Popcorn, Kind::Puff, Kind::Cluster];
+    matches!(tok, Some(Tok::Stitch(spelled)) if bunch.contains(&spelled.any()))
+}
+
+/// Stitches: how many, which, where.
+fn op(input: Tokens<'_>) -> Res<'_, Clause> {
+    let (rest, back) = opt(key(Key::Neg)).parse(input)?;
+    let hyphened = rest.key(1) == Some(Key::Hyphen) && is_bunch(rest.tok(3));
+    if let (Some(Tok::Int(_)), true) = (rest.tok(0), hyphened) {
+        let (after, word) = word(rest.skip(3))?;
+        return op_tail(
+            after,
+            Op { entry: None, back, n: None, word, place: None, evenly: false, hue: None },
+        );
+    }
+    let (rest, mut n) = match rest.tok(0) {
+        Some(Tok::Int(_)) => opt(int).parse(rest)?,
+        _ => (rest, None),
+    };
+    let (rest, before) = loop_word(rest);
+    let (mut rest, word) = match word(rest) {
+        Ok(parsed) => parsed,
+        Err(Err::Error(())) => {
+            if let Some(n) = n
+                && !matches!(rest.tok(0), Some(Tok::Word))
+            {
+                rest.note(FaultKind::NoStitch(n.at));
+            }
+            return Err(Err::Error(()));
+        }
+        Err(error) => return Err(error),
+    };
+    let (after, mut entry) = loop_word(rest);
+    rest = after;
+    entry = entry.or(before);
+    if n.is_none() {
+        match multiplier(rest) {
+            Ok((after, Times::N(number) | Times::Rep(number))) => (rest, n) = (after, Some(number)),
+            Ok(_) | Err(Err::Error(()) | Err::Incomplete(_)) => {
+                if let Ok((after, number)) = int(rest) {
+                    (rest, n) = (after, Some(number));
+                }
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    let (rest, after) = loop_word(rest);
+    op_tail(rest, Op { entry: after.or(entry), back, n, word, place: None, evenly: false, hue: None })
+}
+
+fn loop_word(input: Tokens<'_>) -> (Tokens<'_>, Option<Entry>) {
+    match input.key(0) {
+        Some(word @ (Key::Blo | Key::Flo)) => (input.skip(1), Some(entry(Some(word)))),
+        _ => (input, None),
+    }
+}
+
+/// Where the stitches go, and their color.
+fn op_tail(input: Tokens<'_>, mut op: Op) -> Res<'_, Clause> {
+    let (mut rest, starting) = opt(key(Key::Starting)).parse(input)?;
+    if rest.key(0) == Some(Key::In) {
+        let (after, entry) = loop_word(rest.skip(1));
+        match place(after) {
+            Ok((after, place)) => {
+                op.entry = entry.or(op.entry);
+                op.place = Some(match place {
+                    Place::FromHook(n, _) => Place::FromHook(n, starting.is_some()),
+                    place => place,
+                });
+                rest = after;
+            }
+            Err(_) if entry.is_some() => {
+                op.entry = entry;
+                rest = after;
+                if let Ok((end_of_fill, end)) = fill(after) {
+                    (rest, op.place) = (end_of_fill, Some(Place::Fill(end)));
+                }
+            }
+            Err(error) if matches!(rest.tok(1), Some(Tok::Letter | Tok::Color(_))) => {
+                let _ = error;
+            }
+            Err(error) => return Err(error),
+        }
+    } else if matches!(rest.key(0), Some(Key::Next | Key::Each)) {
+        let (after, place) = place(rest)?;
+        (rest, op.place) = (after, Some(place));
+    } else if rest.key(0) == Some(Key::Over) {
+        let (after, place) = over(rest)?;
+        (rest, op.place) = (after, Some(place));
+    } else if rest.key(0) == Some(Key::Evenly) {
+        op.evenly = true;
+        rest = rest.skip(1);
+        if matches!(rest.key(0), Some(Key::Around | Key::Across)) {
+            rest = rest.skip(1);
+        }
+    } else if is_ring_tag(rest) {
+        op.place = Some(Place::Ring);
+        rest = rest.skip(3);
+    } else if !matches!(rest.key(0), Some(Key::Rep))
+        && let Ok((after, end)) = fill(rest)
+    {
+        (rest, op.place) = (after, Some(Place::Fill(end)));
+    }
+    // `sc next 2 sts together`.
+    if let (Some(Place::Next(Some(n), _)), Some(Key::Tog)) = (op.place, rest.key(0)) {
+        op.word.shape = Shape::Tog(n);
+        op.place = None;
+        rest = rest.skip(1);
+    }
+    let said = usize::from(matches!(rest.key(0), Some(Key::In | Key::With)));
+    if let Some(Tok::Letter | Tok::Color(_)) = rest.tok(said) {
+        op.hue = Some(rest.at(said));
+        rest = rest.skip(said + 1);
+    }
+    Ok((rest, Clause::Op(Box::new(op))))
+}

@@ -1,0 +1,352 @@
+//! From a file to its lines: headers, comments, prose, parts and rows, each line by itself.
+
+use super::lex::{self, At, Tok, Token};
+use super::parse::{Context, Fault, FaultKind, Tokens};
+use super::row;
+use super::syntax::{Content, Header, Line, Num, Pair};
+use super::words::{Meaning, Words, fold_word};
+use crate::ir::Language;
+use std::cell::Cell;
+
+/// Longest line that is read, in bytes.
+pub(crate) const MAX_LINE: usize = 1 << 20;
+
+/// A fault of a line, before it becomes a diagnostic.
+#[derive(Debug)]
+pub(crate) enum LineFault {
+    /// The parser stopped; the token at which it did.
+    Syntax { kind: FaultKind, token: Option<(Tok, At)>, line: At },
+    /// A character that text must not hold.
+    Character(At),
+    /// The line is longer than [`MAX_LINE`].
+    Long(At),
+    /// A header whose value means nothing.
+    Header { at: At, what: &'static str },
+}
+
+/// A file in lines, with the names that it declares.
+pub(crate) struct Tree {
+    pub lines: Vec<Line>,
+    pub faults: Vec<LineFault>,
+    pub language: Language,
+    pub colors: Vec<String>,
+    pub defs: Vec<Definition>,
+}
+
+/// A stitch that a file declares.
+pub(crate) struct Definition {
+    /// The stitch it is made of, when it is named after one: `sc-b-a`.
+    pub base: Option<super::words::Spelled>,
+    pub works: u16,
+    pub makes: u16,
+}
+
+/// Parses a whole text. `language` applies until the file names its own.
+pub(crate) fn parse(text: &str, language: Language) -> (Tree, Words) {
+    let mut tree =
+        Tree { lines: Vec::new(), faults: Vec::new(), language, colors: Vec::new(), defs: Vec::new() };
+    let mut words = Words::new(language);
+    let mut tokens: Vec<Token> = Vec::new();
+    let mut heading = false;
+    for (start, end) in lines(text) {
+        let at = At::new(start, end);
+        if end - start > MAX_LINE {
+            tree.faults.push(LineFault::Long(At::new(start, start)));
+            tree.lines.push(Line { at, what: Content::Broken { label: None, count: None }, remark: None });
+            continue;
+        }
+        let raw = text.get(start..end).unwrap_or_default();
+        let (content_end, remark) = remark(raw);
+        let what = if raw.trim().is_empty() {
+            heading = false;
+            Content::Blank
+        } else if is_comment(raw) {
+            Content::Comment
+        } else if let Some(header) = header(raw, start, &mut tree, &mut words) {
+            header
+        } else {
+            line(text, start, start + content_end, &words, &mut tokens, &mut heading, &mut tree.faults)
+        };
+        let remark =
+            remark.map(|from| At::new(start + from, end)).filter(|_| !matches!(what, Content::Comment));
+        tree.lines.push(Line { at, what, remark });
+    }
+    (tree, words)
+}
+
+/// Starts and ends of lines; a line ends at LF, CR LF, CR, and at the separators of Unicode.
+fn lines(text: &str) -> impl Iterator<Item = (usize, usize)> {
+    let bytes = text.as_bytes();
+    let mut next = Some(if text.starts_with('\u{feff}') { 3 } else { 0 });
+    std::iter::from_fn(move || {
+        let start = next?;
+        let rest = bytes.get(start..)?;
+        let found = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r' | 0x0b | 0x0c));
+        if let Some(length) = found {
+            let end = start + length;
+            let two = bytes.get(end..end + 2) == Some(b"\r\n");
+            next = Some(end + if two { 2 } else { 1 });
+            Some((start, end))
+        } else {
+            next = None;
+            (!rest.is_empty()).then_some((start, bytes.len()))
+        }
+    })
+}
+
+/// Where the content of a line ends, and where a `//` remark begins.
+fn remark(raw: &str) -> (usize, Option<usize>) {
+    match raw.find("//") {
+        // A web address is no remark.
+        Some(at) if !raw.get(..at).is_some_and(|before| before.ends_with(':')) => (at, Some(at)),
+        _ => (raw.len(), None),
+    }
+}
+
+fn is_comment(raw: &str) -> bool {
+    let trimmed = raw.trim_start();
+    trimmed.starts_with("//")
+        || trimmed.starts_with('#')
+        || trimmed.split_once(':').is_some_and(|(key, _)| {
+            key.len() <= 24 && PROSE.iter().any(|word| key.trim_end().eq_ignore_ascii_case(word))
+        })
+}
+
+/// Headings whose line is text for people.
+const PROSE: &[&str] = &[
+    "note",
+    "notes",
+    "tip",
+    "size",
+    "finished size",
+    "materials",
+    "abbreviations",
+    "stuffing",
+    "assembly",
+    "finishing",
+    "difficulty",
+    "skill level",
+    "designer",
+    "copyright",
+    "tension",
+];
+
+/// Headings under which a list of text follows, up to the next blank line.
+const LISTS: &[&str] =
+    &["abbreviations", "materials", "stitches used", "special stitches", "notes", "stitch key"];
+
+fn trim(raw: &str, base: usize) -> At {
+    let lead = raw.len() - raw.trim_start().len();
+    At::new(base + lead, base + lead + raw.trim().len())
+}
+
+fn header(raw: &str, base: usize, tree: &mut Tree, words: &mut Words) -> Option<Content> {
+    let trimmed = raw.trim_start();
+    let lead = raw.len() - trimmed.len();
+    let word_end = trimmed.find(|c: char| !c.is_ascii_alphabetic())?;
+    let word = trimmed.get(..word_end)?;
+    let after = trimmed.get(word_end..)?;
+    let after_base = base + lead + word_end;
+    let pair = PAIRS.iter().find(|(name, _)| word.eq_ignore_ascii_case(name));
+    if let (Some((_, pair)), Some(value)) = (pair, after.trim_start().strip_prefix(':')) {
+        let value_base = after_base + (after.len() - after.trim_start().len()) + 1;
+        let at = trim(value, value_base);
+        if *pair == Pair::Lang {
+            match Language::parse(value.trim()) {
+                Some(language) => {
+                    tree.language = language;
+                    let declared = std::mem::replace(words, Words::new(language));
+                    words.inherit(declared);
+                }
+                None => tree
+                    .faults
+                    .push(LineFault::Header { at, what: "a language: en, es, pt, fr, de, no, letters" }),
+            }
+        }
+        return Some(Content::Header(Header::Pair { key: *pair, value: at }));
+    }
+    if word.eq_ignore_ascii_case("convention") {
+        let value = after.trim_start().strip_prefix(':')?;
+        let value_base = after_base + (after.len() - after.trim_start().len()) + 1;
+        return Some(convention(value, value_base, tree));
+    }
+    if word.eq_ignore_ascii_case("color") || word.eq_ignore_ascii_case("colour") {
+        let (name, value) = after.split_once('=')?;
+        let at = trim(name, after_base);
+        let value_at = trim(value, after_base + name.len() + 1);
+        if name.trim().is_empty() || value.trim().is_empty() {
+            tree.faults.push(LineFault::Header { at: trim(raw, base), what: "`color NAME = #RRGGBB`" });
+        } else if tree.colors.len() < usize::from(u16::MAX) {
+            words.declare(name.trim(), Meaning::Color(tree.colors.len() as u16));
+            tree.colors.push(name.trim().to_owned());
+        }
+        return Some(Content::Header(Header::Color { name: at, value: value_at }));
+    }
+    if word.eq_ignore_ascii_case("def") && after.starts_with(char::is_whitespace) {
+        return def(after, after_base, raw, base, tree, words);
+    }
+    let list = trimmed.trim_end().trim_end_matches(':');
+    if LISTS.iter().any(|name| list.eq_ignore_ascii_case(name)) {
+        return None;
+    }
+    None
+}
+
+fn convention(value: &str, base: usize, tree: &mut Tree) -> Content {
+    let mut settings = Vec::new();
+    let mut offset = base;
+    for piece in value.split([',', ';']) {
+        match piece.split_once('=') {
+            Some((key, choice)) => {
+                settings.push((trim(key, offset), trim(choice, offset + key.len() + 1)));
+            }
+            None => tree.faults.push(LineFault::Header { at: trim(piece, offset), what: "`setting=value`" }),
+        }
+        offset += piece.len() + 1;
+    }
+    Content::Header(Header::Convention { settings })
+}
+
+/// `def shell = 1 -> 5 5 dc in one stitch`.
+fn def(
+    after: &str,
+    after_base: usize,
+    raw: &str,
+    base: usize,
+    tree: &mut Tree,
+    words: &mut Words,
+) -> Option<Content> {
+    let (name, value) = after.split_once('=')?;
+    let name_at = trim(name, after_base);
+    let numbers = |text: &str, from: usize| {
+        let lead = text.len() - text.trim_start().len();
+        let digits: usize = text.trim_start().bytes().take_while(u8::is_ascii_digit).count();
+        let value = text.get(lead..lead + digits)?.parse::<u16>().ok()?;
+        Some((Num { value: u32::from(value), at: At::new(from + lead, from + lead + digits) }, lead + digits))
+    };
+    let value_base = after_base + name.len() + 1;
+    let parsed = (|| {
+        let (works, taken) = numbers(value, value_base)?;
+        let rest = value.get(taken..)?;
+        let lead = rest.len() - rest.trim_start().len();
+        let arrow = ["->", "→", "=>"].iter().find(|arrow| rest.trim_start().starts_with(**arrow))?;
+        let makes_from = taken + lead + arrow.len();
+        let (makes, length) = numbers(value.get(makes_from..)?, value_base + makes_from)?;
+        let text = value.get(makes_from + length..)?;
+        Some((works, makes, trim(text, value_base + makes_from + length)))
+    })();
+    let single = !name.trim().is_empty() && name.trim().chars().all(|c| c.is_alphabetic() || c == '-');
+    match parsed {
+        Some((works, makes, text)) if single => {
+            if tree.defs.len() < usize::from(u16::MAX) {
+                words.declare(name.trim(), Meaning::Def(tree.defs.len() as u16));
+                let stem = name.trim().split('-').next().filter(|stem| stem.len() < name.trim().len());
+                let base = stem.and_then(|stem| words.get(fold_word(stem).as_bytes())).and_then(|meaning| {
+                    match meaning {
+                        Meaning::Stitch(spelled) => Some(spelled),
+                        _ => None,
+                    }
+                });
+                tree.defs.push(Definition { base, works: works.value as u16, makes: makes.value as u16 });
+            }
+            Some(Content::Header(Header::Def { name: name_at, works, makes, text }))
+        }
+        _ => {
+            tree.faults.push(LineFault::Header { at: trim(raw, base), what: "`def NAME = WORKS -> MAKES`" });
+            Some(Content::Broken { label: None, count: None })
+        }
+    }
+}
+
+const PAIRS: &[(&str, Pair)] = &[
+    ("title", Pair::Title),
+    ("terms", Pair::Terms),
+    ("lang", Pair::Lang),
+    ("language", Pair::Lang),
+    ("gauge", Pair::Gauge),
+    ("yarn", Pair::Yarn),
+    ("hook", Pair::Hook),
+];
+
+/// A line that is no header: a part, a row, or prose.
+fn line(
+    text: &str,
+    start: usize,
+    end: usize,
+    words: &Words,
+    tokens: &mut Vec<Token>,
+    heading: &mut bool,
+    faults: &mut Vec<LineFault>,
+) -> Content {
+    if let Err(at) = lex::line(text, start, end, words, tokens) {
+        faults.push(LineFault::Character(at));
+        return Content::Broken { label: None, count: None };
+    }
+    let fault = Fault { done: 0, kind: FaultKind::Expected("an instruction") };
+    let context = Context { total: tokens.len(), furthest: Cell::new(fault) };
+    let input = Tokens::new(tokens, &context);
+    if input.is_empty() {
+        return Content::Blank;
+    }
+    let labeled = row::is_labeled(input);
+    if labeled {
+        *heading = false;
+    }
+    let raw = text.get(start..end).unwrap_or_default().trim();
+    if LISTS.iter().any(|name| raw.trim_end_matches(':').trim_end().eq_ignore_ascii_case(name)) {
+        *heading = true;
+        return Content::Comment;
+    }
+    if *heading {
+        return Content::Comment;
+    }
+    if !labeled {
+        if let Ok((_, head)) = row::part(input) {
+            return Content::Part(head);
+        }
+        if row::is_abbreviation(input) || !row::has_stitch_word(input) {
+            // A part whose origin is wrong is no prose.
+            if !row::opens_part(input) {
+                return Content::Prose;
+            }
+        }
+        if row::opens_part(input) {
+            return broken(input, context.furthest.get(), start, end, faults);
+        }
+        context.furthest.set(Fault { done: 0, kind: FaultKind::Expected("an instruction") });
+    }
+    match row::row(input) {
+        Ok((_, content)) => content,
+        Err(_) => broken(input, context.furthest.get(), start, end, faults),
+    }
+}
+
+fn broken(input: Tokens<'_>, fault: Fault, start: usize, end: usize, faults: &mut Vec<LineFault>) -> Content {
+    let line = At::new(start, end);
+    let unread =
+        |token: &&Token| token.tok == Tok::Word || token.tok == Tok::Key(super::words::Key::Tunisian);
+    // A word that is not known explains more than what it led to.
+    let word = match fault.kind {
+        FaultKind::Deep(_) => None,
+        _ => input.rest.iter().find(unread).filter(|_| input.rest.len() < 4096),
+    };
+    let token = word.or(input.rest.get(fault.done)).map(|token| (token.tok, token.at));
+    faults.push(LineFault::Syntax { kind: fault.kind, token, line });
+    let (label, count) = row::frame(input);
+    Content::Broken { label: label.map(Box::new), count }
+}
+
+impl Words {
+    /// Takes over the names that a file declared before it named its language.
+    fn inherit(&mut self, before: Self) {
+        for (name, meaning) in before.declared() {
+            self.declare(&name, meaning);
+        }
+    }
+}
+
+/// The name of a part, folded so that spelling differences do not matter.
+pub(crate) fn fold_name(name: &str) -> String {
+    let folded: Vec<String> = name.trim().trim_matches('"').split_whitespace().map(fold_word).collect();
+    folded.join(" ")
+}

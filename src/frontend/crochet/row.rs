@@ -1,0 +1,515 @@
+//! Parsers for a whole line: its label from the left, its count from the right, the body between.
+
+use super::clause::body;
+use super::lex::Tok;
+use super::parse::{FaultKind, Res, Tokens, any_key, int, key, name};
+use super::place::multiplier;
+use super::syntax::{
+    AgainLine, Clause, Content, Count, CountUnit, Label, Node, Num, Origin, PartHead, Piece, RowKind,
+    RowLine, Spot, Times,
+};
+use super::words::Key;
+use nom::Parser;
+use nom::combinator::opt;
+use nom::sequence::{pair, preceded};
+
+/// A row with its label and count; the whole line must be read.
+pub(crate) fn row(input: Tokens<'_>) -> Res<'_, Content> {
+    let (input, table) = bullet(input);
+    let (input, label) = match label(input, table) {
+        Ok((rest, label)) => (rest, Some(label)),
+        Err(_) => (input, None),
+    };
+    if label.is_some()
+        && let Ok((rest, again)) = again(input, label.clone())
+    {
+        return Ok((rest, Content::Again(Box::new(again))));
+    }
+    if input.is_empty() {
+        return input.fail("an instruction");
+    }
+    let (rest, nodes) = body(input)?;
+    let rest = end_mark(rest);
+    let rest = if table && rest.key(0) == Some(Key::Pipe) { rest.skip(1) } else { rest };
+    let (rest, count) = opt(|input| count(input, table)).parse(rest)?;
+    let mut line = RowLine { label, body: nodes, count, cue: None };
+    let rest = if table && rest.key(0) == Some(Key::Pipe) { rest.skip(1) } else { end_mark(rest) };
+    let rest = if line.count.is_some() { cue(rest, &mut line) } else { rest };
+    if !rest.is_empty() {
+        return leftover(rest);
+    }
+    Ok((rest, Content::Row(Box::new(line))))
+}
+
+/// The label and the count of a line whose body cannot be read.
+pub(crate) fn frame(input: Tokens<'_>) -> (Option<Label>, Option<Count>) {
+    let (input, table) = bullet(input);
+    let (input, label) = match label(input, table) {
+        Ok((rest, label)) => (rest, Some(label)),
+        Err(_) => (input, None),
+    };
+    let from = input.rest.len().saturating_sub(8);
+    let found = (from..input.rest.len()).find_map(|index| {
+        let (rest, found) = count(input.skip(index), table).ok()?;
+        end_mark(rest).is_empty().then_some(found)
+    });
+    (label, found)
+}
+
+fn leftover<T>(rest: Tokens<'_>) -> Res<'_, T> {
+    rest.note(FaultKind::Expected("the end of the line"));
+    Err(nom::Err::Error(()))
+}
+
+fn end_mark(input: Tokens<'_>) -> Tokens<'_> {
+    match input.key(0) {
+        Some(Key::Comma | Key::Semi | Key::Dot) if !count_ahead(input, false) => input.skip(1),
+        _ => input,
+    }
+}
+
+/// A bullet or the first bar of a table row.
+fn bullet(input: Tokens<'_>) -> (Tokens<'_>, bool) {
+    match input.key(0) {
+        Some(Key::Middot | Key::Dash) => (input.skip(1), false),
+        Some(Key::Pipe) => (input.skip(1), true),
+        Some(Key::Star) if label(input.skip(1), false).is_ok() => (input.skip(1), false),
+        _ => (input, false),
+    }
+}
+
+fn row_kind(input: Tokens<'_>) -> Res<'_, RowKind> {
+    let (rest, kind) = any_key(&[Key::Rnd, Key::Row, Key::R])(input)?;
+    let kind = match kind {
+        Key::Rnd => RowKind::Rnd,
+        Key::Row => RowKind::Row,
+        _ => RowKind::R,
+    };
+    Ok((rest, kind))
+}
+
+fn row_number(input: Tokens<'_>) -> Res<'_, Num> {
+    let (rest, _) = opt(any_key(&[Key::R, Key::Rnd])).parse(input)?;
+    match rest.tok(0) {
+        Some(Tok::Int(value) | Tok::Ord(value)) => Ok((rest.skip(1), Num { value, at: rest.at(0) })),
+        _ => Err(nom::Err::Error(())),
+    }
+}
+
+/// Row numbers: `5, 7 and 9`, `4-6`.
+fn row_set(input: Tokens<'_>) -> Res<'_, Vec<(Num, Option<Num>)>> {
+    let (mut rest, first) = row_number(input)?;
+    let mut set = vec![(first, None)];
+    loop {
+        let range = match rest.key(0) {
+            Some(Key::Hyphen | Key::To) => true,
+            // A spaced dash may also end the label: `3 - 8 sc`.
+            Some(Key::Dash) => {
+                let after = row_number(rest.skip(1)).map(|(after, _)| after);
+                after.is_ok_and(|after| {
+                    matches!(
+                        after.key(0),
+                        Some(Key::Colon | Key::Dot | Key::Rnd | Key::Row | Key::Close(b'('))
+                    ) || (matches!(after.key(0), Some(Key::Open(b'(')))
+                        && matches!(after.key(2), Some(Key::Rnd | Key::Row)))
+                })
+            }
+            _ => false,
+        };
+        if range {
+            let (after, last) = row_number(rest.skip(1))?;
+            match set.last_mut() {
+                Some((_, to @ None)) => *to = Some(last),
+                _ => return Err(nom::Err::Error(())),
+            }
+            rest = after;
+            continue;
+        }
+        let comma = match (rest.key(0), rest.key(1)) {
+            (Some(Key::Comma), Some(Key::And)) => 2,
+            (Some(Key::Comma | Key::And), _) => 1,
+            _ => return Ok((rest, set)),
+        };
+        match row_number(rest.skip(comma)) {
+            Ok((after, next)) => {
+                set.push((next, None));
+                rest = after;
+            }
+            Err(_) => return Ok((rest, set)),
+        }
+    }
+}
+
+/// `Rnds 7-12 (6 rnds):`.
+pub(crate) fn label(input: Tokens<'_>, table: bool) -> Res<'_, Label> {
+    let (rest, before) = opt(row_kind).parse(input)?;
+    let (rest, _) = if before.is_some() { opt(key(Key::Dot)).parse(rest)? } else { (rest, None) };
+    let (rest, set) = row_set(rest)?;
+    let (mut rest, mut kind) = (rest, before);
+    let dotted = if rest.key(0) == Some(Key::Dot) { rest.skip(1) } else { rest };
+    if let Ok((after, found)) = row_kind(dotted) {
+        (rest, kind) = (after, kind.or(Some(found)));
+        // `carr.` ends its own abbreviation.
+        if rest.key(0) == Some(Key::Dot) && matches!(rest.key(1), Some(Key::Colon)) {
+            rest = rest.skip(1);
+        }
+    }
+    let mut label =
+        Label { kind: kind.unwrap_or(RowKind::None), set, rounds: None, tags: Vec::new(), at: input.at(0) };
+    while let Some(Key::Open(brace)) = rest.key(0) {
+        let Some(length) = rest.rest.iter().position(|token| token.tok == Tok::Key(Key::Close(brace))) else {
+            break;
+        };
+        let inside = Tokens { rest: rest.rest.get(1..length).unwrap_or_default(), ..rest };
+        match (inside.tok(0), inside.key(1), inside.rest.len()) {
+            (Some(Tok::Int(value)), Some(Key::Rnd | Key::Row | Key::R), 2) => {
+                label.rounds = Some(Num { value, at: inside.at(0) });
+            }
+            (Some(Tok::Stitch(_)), ..) => return Err(nom::Err::Error(())),
+            (Some(_), ..) if inside.rest.len() <= 4 => {
+                label.tags.push(inside.until(Tokens { rest: &[], ..inside }));
+            }
+            _ => return Err(nom::Err::Error(())),
+        }
+        rest = rest.skip(length + 1);
+    }
+    let ended = match rest.key(0) {
+        Some(Key::Colon | Key::Dot | Key::Dash) => true,
+        Some(Key::Close(b'(')) => kind.is_none(),
+        Some(Key::Pipe) => table,
+        _ => false,
+    };
+    if !ended {
+        return rest.fail("`:` after the round number");
+    }
+    label.at = input.until(rest);
+    Ok((rest.skip(1), label))
+}
+
+/// `rep rows 4 and 5 twice`.
+fn again(input: Tokens<'_>, label: Option<Label>) -> Res<'_, AgainLine> {
+    let (rest, _) = key(Key::Rep)(input)?;
+    let (rest, _) = row_kind(rest)?;
+    let (rest, set) = row_set(rest)?;
+    let (rest, times) = opt(multiplier).parse(rest)?;
+    let rest = end_mark(rest);
+    let (rest, count) = opt(|input| count(input, false)).parse(rest)?;
+    let rest = end_mark(rest);
+    if !rest.is_empty() {
+        return leftover(rest);
+    }
+    let (times, more) = match times {
+        Some(Times::N(n) | Times::Rep(n)) => (Some(n), false),
+        Some(Times::More(n)) => (Some(n), true),
+        _ => (None, false),
+    };
+    Ok((rest, AgainLine { label, set, times, more, count, at: input.until(rest) }))
+}
+
+/// An amount and what it counts.
+fn amount(input: Tokens<'_>) -> Res<'_, (Num, CountUnit)> {
+    let (rest, n) = match input.tok(0) {
+        // `21st` is 21 stitches here.
+        Some(Tok::Ord(value)) => (input.skip(1), Num { value, at: input.at(0) }),
+        _ => int(input)?,
+    };
+    let one = |unit| Ok((rest.skip(1), (n, unit)));
+    match rest.tok(0) {
+        Some(Tok::Key(Key::St | Key::Loop)) => {
+            let after = rest.skip(1);
+            let (after, _) = opt(key(Key::Total)).parse(after)?;
+            Ok((after, (n, CountUnit::Stitches)))
+        }
+        Some(Tok::Key(Key::Total)) => one(CountUnit::Stitches),
+        Some(Tok::Key(Key::Rnd | Key::Row | Key::R)) => one(CountUnit::Rounds),
+        Some(Tok::Stitch(spelled)) => one(CountUnit::Kind(spelled)),
+        Some(Tok::Key(Key::Ch)) => {
+            let after = rest.skip(1);
+            let (after, _) = opt(pair(opt(key(Key::Hyphen)), int)).parse(after)?;
+            let (after, hyphen) = opt(key(Key::Hyphen)).parse(after)?;
+            match (after.key(0), hyphen) {
+                (Some(Key::Sp), _) => Ok((after.skip(1), (n, CountUnit::Spaces))),
+                (_, None) => one(CountUnit::Chains),
+                _ => after.fail("`sp`"),
+            }
+        }
+        _ => Ok((rest, (n, CountUnit::Stitches))),
+    }
+}
+
+/// The count of a row.
+pub(crate) fn count(input: Tokens<'_>, table: bool) -> Res<'_, Count> {
+    let mut units = Vec::new();
+    match input.key(0) {
+        Some(Key::Open(brace @ (b'(' | b'['))) => {
+            let (mut rest, first) = amount(input.skip(1))?;
+            units.push(first);
+            while matches!(rest.key(0), Some(Key::Comma | Key::Semi | Key::And | Key::Slash)) {
+                let (after, next) = amount(rest.skip(1))?;
+                units.push(next);
+                rest = after;
+            }
+            let (rest, _) = key(Key::Close(brace))(rest)?;
+            finish(input, rest, units)
+        }
+        Some(Key::Eq | Key::FatArrow | Key::Fwd | Key::Dash | Key::Colon) => {
+            let (rest, first) = amount(input.skip(1))?;
+            units.push(first);
+            finish(input, rest, units)
+        }
+        Some(Key::Comma | Key::Semi | Key::Dot | Key::Middot) => {
+            let rest = input.skip(1);
+            if rest.key(0) == Some(Key::You) {
+                return said(input, rest);
+            }
+            let (after, first) = amount(rest)?;
+            if after.rest.len() == rest.rest.len() - 1 || matches!(first.1, CountUnit::Kind(_)) {
+                return input.fail("`st` after the count");
+            }
+            units.push(first);
+            finish(input, after, units)
+        }
+        Some(Key::You) => said(input, input),
+        _ if table => {
+            let (rest, first) = amount(input)?;
+            units.push(first);
+            finish(input, rest, units)
+        }
+        _ => input.fail("a count"),
+    }
+}
+
+/// `You will have 8 stitches`.
+fn said<'t>(start: Tokens<'t>, input: Tokens<'t>) -> Res<'t, Count> {
+    let lead = (key(Key::You), opt(key(Key::Will)), opt(key(Key::Have)), opt(key(Key::Total)));
+    let (rest, first) = preceded(lead, amount).parse(input)?;
+    finish(start, rest, vec![first])
+}
+
+fn finish<'t>(from: Tokens<'t>, rest: Tokens<'t>, units: Vec<(Num, CountUnit)>) -> Res<'t, Count> {
+    let Some((total, _)) = units.first().copied() else { return from.fail("a count") };
+    Ok((rest, Count { total, units, at: from.until(rest) }))
+}
+
+/// True when a count follows and the line ends behind it.
+pub(crate) fn count_ahead(input: Tokens<'_>, back: bool) -> bool {
+    let possible = match input.key(0) {
+        Some(Key::Open(b'(' | b'[')) => matches!(input.tok(1), Some(Tok::Int(_) | Tok::Ord(_))),
+        Some(Key::Eq | Key::FatArrow | Key::You) => true,
+        // In a back pass an arrow with stitches behind it goes forward.
+        Some(Key::Fwd) => !back || !matches!(input.tok(2), Some(Tok::Stitch(_) | Tok::Shaped(..))),
+        Some(Key::Comma | Key::Semi | Key::Dot | Key::Middot) => {
+            matches!(
+                (input.tok(1), input.tok(2)),
+                (Some(Tok::Int(_) | Tok::Ord(_)), Some(Tok::Key(Key::St | Key::Total)))
+            ) || input.key(1) == Some(Key::You)
+        }
+        Some(Key::Dash) => {
+            matches!(input.tok(1), Some(Tok::Int(_) | Tok::Ord(_)))
+                && !matches!(input.tok(2), Some(Tok::Stitch(_)))
+        }
+        _ => false,
+    };
+    // A mark that goes forward counts only at the end of the line.
+    possible
+        && count(input, false).is_ok_and(|(rest, _)| {
+            let rest = pause(pause(rest));
+            rest.is_empty() || is_cue(rest)
+        })
+}
+
+/// Steps over a mark between a count and what follows it.
+fn pause(input: Tokens<'_>) -> Tokens<'_> {
+    match input.key(0) {
+        Some(Key::Comma | Key::Semi | Key::Dot | Key::Middot | Key::Dash | Key::And | Key::Then) => {
+            input.skip(1)
+        }
+        _ => input,
+    }
+}
+
+fn is_cue(input: Tokens<'_>) -> bool {
+    match input.tok(0) {
+        Some(Tok::Key(
+            Key::Fo
+            | Key::Turn
+            | Key::Stuff
+            | Key::Pm
+            | Key::Join
+            | Key::Change
+            | Key::Do
+            | Key::Closed
+            | Key::Ch,
+        )) => true,
+        tok => super::parse::is_slip(tok),
+    }
+}
+
+/// What follows a count: clauses that work no loop, or text that begins with a known word.
+fn cue<'t>(input: Tokens<'t>, line: &mut RowLine) -> Tokens<'t> {
+    let start = pause(pause(input));
+    if start.is_empty() || !is_cue(start) {
+        return input;
+    }
+    if let Ok((rest, nodes)) = body(start)
+        && end_mark(rest).is_empty()
+        && nodes.iter().all(|node| steers(&node.what))
+    {
+        line.body.extend(nodes.into_iter().map(|node| Node { sep: super::syntax::Sep::Dot, ..node }));
+        return end_mark(rest);
+    }
+    match start.key(0) {
+        Some(Key::Fo | Key::Stuff | Key::Pm | Key::Join | Key::Do | Key::Closed) => {
+            let end = start.skip(start.rest.len());
+            line.cue = Some(start.until(end));
+            end
+        }
+        _ => input,
+    }
+}
+
+/// A clause that neither works nor makes a loop.
+fn steers(clause: &Clause) -> bool {
+    matches!(
+        clause,
+        Clause::Turn
+            | Clause::Color(_)
+            | Clause::Chain { .. }
+            | Clause::Join { .. }
+            | Clause::FastenOff
+            | Clause::DrawShut
+            | Clause::Marker
+            | Clause::DoNot
+    )
+}
+
+/// The line that opens a part.
+pub(crate) fn part(input: Tokens<'_>) -> Res<'_, PartHead> {
+    let (rest, name) = name(input)?;
+    let (rest, copies) = match (rest.key(0), rest.key(1)) {
+        (Some(Key::Open(b'(')), Some(Key::Make | Key::Times)) => {
+            let (rest, n) = int(rest.skip(2))?;
+            let (rest, _) = key(Key::Close(b'('))(rest)?;
+            (rest, Some(n))
+        }
+        _ => (rest, None),
+    };
+    let (rest, colon) = opt(key(Key::Colon)).parse(rest)?;
+    if colon.is_none() && copies.is_none() {
+        return rest.fail("`:` after the name of the part");
+    }
+    let (rest, origin) = match rest.key(0) {
+        Some(Key::From) => from(rest)?,
+        Some(Key::Join) => join(rest)?,
+        _ => (rest, Origin::Own),
+    };
+    let (rest, _) = opt(key(Key::Dot)).parse(rest)?;
+    if !rest.is_empty() {
+        return leftover(rest);
+    }
+    Ok((rest, PartHead { name, copies, origin }))
+}
+
+fn from(input: Tokens<'_>) -> Res<'_, Origin> {
+    let (rest, name) = name(input.skip(1))?;
+    let (mut rest, first) = spot(rest)?;
+    let mut spots = vec![first];
+    while matches!(rest.key(0), Some(Key::Comma | Key::And)) {
+        let (after, next) = spot(rest.skip(1))?;
+        spots.push(next);
+        rest = after;
+    }
+    match rest.key(0) {
+        Some(Key::Held) => Ok((rest.skip(1), Origin::From { name, spots, held: true })),
+        Some(Key::Surface) => Ok((rest.skip(1), Origin::From { name, spots, held: false })),
+        _ => rest.fail("`held` or `surface`"),
+    }
+}
+
+/// `rnd 2 sts 6-13`.
+fn spot(input: Tokens<'_>) -> Res<'_, Spot> {
+    let (rest, _) = row_kind(input)?;
+    let (rest, round) = int(rest)?;
+    let (rest, _) = key(Key::St)(rest)?;
+    let (rest, first) = int(rest)?;
+    let (rest, last) = opt(preceded(any_key(&[Key::Hyphen, Key::To, Key::Dash]), int)).parse(rest)?;
+    Ok((rest, Spot { round, first, last: last.unwrap_or(first) }))
+}
+
+fn piece(input: Tokens<'_>) -> Res<'_, Piece> {
+    if input.key(0) == Some(Key::Ch) && matches!(input.tok(1), Some(Tok::Int(_))) {
+        let (_, n) = int(input.skip(1))?;
+        return Ok((input.skip(2), Piece::Chain(n)));
+    }
+    name.map(Piece::Part).parse(input)
+}
+
+fn join(input: Tokens<'_>) -> Res<'_, Origin> {
+    let (mut rest, first) = piece(input.skip(1))?;
+    let mut pieces = vec![first];
+    while rest.key(0) == Some(Key::Plus) {
+        let (after, next) = piece(rest.skip(1))?;
+        pieces.push(next);
+        rest = after;
+    }
+    Ok((rest, Origin::Join { pieces }))
+}
+
+/// True when the line begins with a row label.
+pub(crate) fn is_labeled(input: Tokens<'_>) -> bool {
+    let (input, table) = bullet(input);
+    label(input, table).is_ok()
+}
+
+/// True for a line that can only be meant to open a part: `NAME: from ..`, `NAME: join ..`.
+pub(crate) fn opens_part(input: Tokens<'_>) -> bool {
+    let Ok((rest, _)) = name(input) else { return false };
+    rest.key(0) == Some(Key::Colon)
+        && matches!(rest.key(1), Some(Key::From | Key::Join))
+        && !super::parse::is_slip(rest.tok(3))
+}
+
+/// True when something on the line can only be an instruction.
+pub(crate) fn has_stitch_word(input: Tokens<'_>) -> bool {
+    input.rest.iter().any(|token| {
+        matches!(
+            token.tok,
+            Tok::Stitch(_)
+                | Tok::Shaped(..)
+                | Tok::Def(_)
+                | Tok::Key(Key::Inc | Key::Dec | Key::Invdec | Key::Ch | Key::Mr | Key::Sk | Key::Tunisian)
+        )
+    })
+}
+
+/// `sc = single crochet`: a line of a list of abbreviations.
+pub(crate) fn is_abbreviation(input: Tokens<'_>) -> bool {
+    let input = bullet(input).0;
+    let term = input.rest.iter().take_while(|token| {
+        matches!(
+            token.tok,
+            Tok::Stitch(_)
+                | Tok::Shaped(..)
+                | Tok::Key(
+                    Key::Inc
+                        | Key::Dec
+                        | Key::Invdec
+                        | Key::Ch
+                        | Key::Mr
+                        | Key::Sk
+                        | Key::Tog
+                        | Key::Slash
+                        | Key::St
+                        | Key::Sp
+                        | Key::Hyphen
+                        | Key::Comma
+                )
+                | Tok::Int(_)
+        )
+    });
+    let length = term.count();
+    (1..=6).contains(&length)
+        && !matches!(input.tok(0), Some(Tok::Int(_)))
+        && matches!(input.key(length), Some(Key::Eq | Key::Colon | Key::Dash))
+        && !matches!(input.tok(length + 1), Some(Tok::Int(_)) | None)
+}

@@ -1,0 +1,82 @@
+//! US or UK: the whole file is looked at, for one word alone does not tell.
+
+use super::lex::At;
+use super::lines::Tree;
+use super::syntax::{Clause, Content, Counts, Node, Num};
+use super::words::Spelled;
+use crate::ir::Terms;
+
+/// What the words of a file tell.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Evidence {
+    /// The first word that only US patterns have.
+    pub us: Option<At>,
+    /// The first word that only UK patterns have.
+    pub uk: Option<At>,
+    /// The first word that means another stitch in each.
+    pub open: Option<At>,
+}
+
+impl Evidence {
+    /// The terms, where they can be told.
+    pub(crate) fn terms(self) -> Option<Terms> {
+        match (self.us, self.uk, self.open) {
+            (None, Some(_), _) => Some(Terms::Uk),
+            (Some(_), Some(_), _) | (None, None, Some(_)) => None,
+            _ => Some(Terms::Us),
+        }
+    }
+
+    fn word(&mut self, spelled: Spelled, at: At) {
+        match (spelled.us, spelled.uk) {
+            (Some(us), Some(uk)) if us != uk => self.open = self.open.or(Some(at)),
+            (Some(_), None) => self.us = self.us.or(Some(at)),
+            (None, Some(_)) => self.uk = self.uk.or(Some(at)),
+            _ => {}
+        }
+    }
+
+    /// `ch 3 (counts as dc)`: the chain is as high as the stitch it stands for.
+    fn chain(&mut self, n: Option<Num>, counts: Counts, at: At) {
+        let (Some(n), Counts::As(Spelled { us: Some(us), uk: Some(uk) })) = (n, counts) else { return };
+        let height = |kind: crate::ir::Kind| (kind.height() - f64::from(n.value)).abs() < 0.5;
+        if us != uk {
+            match (height(us), height(uk)) {
+                (true, false) => self.us = self.us.or(Some(at)),
+                (false, true) => self.uk = self.uk.or(Some(at)),
+                _ => self.open = self.open.or(Some(at)),
+            }
+        }
+    }
+
+    fn nodes(&mut self, nodes: &[Node]) {
+        for node in nodes {
+            match &node.what {
+                Clause::Op(op) => {
+                    if let Some(base) = op.word.base {
+                        self.word(base, op.word.at);
+                    }
+                }
+                Clause::Ring { word: Some(word), .. } => {
+                    if let Some(base) = word.base {
+                        self.word(base, word.at);
+                    }
+                }
+                Clause::Group { body, .. } | Clause::Star { body, .. } => self.nodes(body),
+                Clause::Chain { n, counts } => self.chain(*n, *counts, node.at),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Collects the evidence of a file.
+pub(crate) fn evidence(tree: &Tree) -> Evidence {
+    let mut evidence = Evidence::default();
+    for line in &tree.lines {
+        if let Content::Row(row) = &line.what {
+            evidence.nodes(&row.body);
+        }
+    }
+    evidence
+}
