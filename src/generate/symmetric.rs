@@ -9,10 +9,11 @@ use crate::ir::{NodeId, Stitch};
 use crate::shape::ParametricSurface;
 
 /// Price of a shaped round, in stitch-weighted squared strain; what is added for shaping in few places, for a number of
-/// places that does not go with the magic ring, and, on an open tube, for one that is no multiple of six.
+/// places that does not go with the magic ring or is a part of it, and, on an open tube, for one that is no multiple of six.
 const PRICE: f64 = 0.012;
 const LOPSIDED: f64 = 0.25;
 const OUT_OF_STEP: f64 = 0.5;
+const PART_OF_STEP: f64 = 0.2;
 const OUT_OF_SIX: f64 = 0.05;
 /// How far a round may be from its girth.
 const BAND: f64 = 0.16;
@@ -107,9 +108,11 @@ pub(crate) fn plan_counts(girths: &[f64], ring: Option<u32>) -> Option<Vec<u32>>
 fn shaping_price(repeats: u32, ring: Option<u32>) -> f64 {
     let lopsided = if repeats < 4 { LOPSIDED / f64::from(repeats) } else { 0.0 };
     let odd = match ring {
-        Some(ring) if !repeats.is_multiple_of(ring) && !ring.is_multiple_of(repeats) => OUT_OF_STEP,
-        None if !repeats.is_multiple_of(6) => OUT_OF_SIX,
-        _ => 0.0,
+        Some(ring) if repeats.is_multiple_of(ring) => 0.0,
+        Some(ring) if ring.is_multiple_of(repeats) => PART_OF_STEP,
+        Some(_) => OUT_OF_STEP,
+        None if repeats.is_multiple_of(6) => 0.0,
+        None => OUT_OF_SIX,
     };
     PRICE + lopsided + odd
 }
