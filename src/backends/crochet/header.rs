@@ -16,6 +16,10 @@ pub(super) fn write(options: &Crochet, program: &Verified<'_>, text: &mut Text<'
     if let Some(gauge) = &program.gauge {
         text.line(&format!("gauge: {}", gauge_line(gauge)))?;
     }
+    if uses.short_rows {
+        // A turn of ours neither works nor skips a loop; the other habit is to bridge one.
+        text.line("convention: turn-mark=bare")?;
+    }
     for (kind, works, makes) in &uses.special {
         text.line(&format!("def {} = {works} -> {makes}", special(*kind, *works, *makes)))?;
     }
