@@ -195,13 +195,6 @@ fn run(count: u64) {
 }
 
 #[test]
-fn random_surfaces_give_a_pattern_or_a_reason() {
-    run(150);
-}
-
-/// The full count; `cargo test --release -- --ignored two_thousand`.
-#[test]
-#[ignore = "takes a minute or more in a debug build"]
 fn two_thousand_random_surfaces_give_a_pattern_or_a_reason() {
     run(2000);
 }
