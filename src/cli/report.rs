@@ -4,7 +4,7 @@ use super::Failure;
 use super::args::{Color, Global};
 use picot::diag::position::Positions;
 use picot::diag::render::terminal::terminal;
-use picot::diag::{Diagnostic, Severity, Sources};
+use picot::diag::{Code, Diagnostic, Severity, Sources};
 use std::fmt::Write as _;
 use std::io::{self, IsTerminal, Write as _};
 
@@ -56,15 +56,17 @@ impl Report {
 
     /// Tells why a command stopped.
     pub(crate) fn failure(self, failure: &Failure) {
-        let (message, help) = match failure {
+        let (code, message, help) = match failure {
             Failure::Usage { message, help } | Failure::Impossible { message, help } => {
-                (message.clone(), help.as_deref())
+                (String::new(), message.clone(), help.as_deref())
             }
             Failure::File { error, .. } if error.kind() == io::ErrorKind::BrokenPipe => return,
-            Failure::File { name, error } => (format!("{name}: {}", plain(error)), None),
+            Failure::File { name, error } => {
+                (format!("[{}]", Code::FileFails.as_str()), format!("{name}: {}", plain(error)), None)
+            }
         };
         let (open, close) = if self.color { ("\x1b[1m\x1b[91m", "\x1b[0m") } else { ("", "") };
-        let mut text = format!("{open}error{close}: {message}\n");
+        let mut text = format!("{open}error{code}{close}: {message}\n");
         if let Some(help) = help {
             let _ = writeln!(text, "  help: {help}");
         }

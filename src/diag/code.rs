@@ -927,6 +927,14 @@ codes! {
     /// Shown: the first 64 findings of a file.
     /// Hidden: the rest, which a second run shows when the first are mended.
     MoreFindings = "N1205", "more findings are not shown";
+    /// A file cannot be read or written.
+    ///
+    /// The message ends with what the system says: the file does not exist, is a folder, may not be read or written, or is
+    /// larger than Picot takes. Nothing is written when one of the files of a run fails.
+    ///
+    /// Wrong: `picot build bal.toml` where the file is `ball.toml`.
+    /// Right: `picot build shapes/ball.toml`, with the folder that the file lies in.
+    FileFails = "E9001", "a file cannot be read or written";
     /// A file is not UTF-8 text.
     ///
     /// Shape files, patterns and machine code are UTF-8. Old editors may save letters with accents in another coding.
