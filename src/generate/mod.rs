@@ -21,7 +21,7 @@ pub use options::Options;
 
 use crate::diag::{Code, Diagnostic, Sink};
 use crate::ir::{Gauge, Graph, MAX_LOOPS};
-use crate::shape::{End, ParametricSurface, Tube};
+use crate::shape::{End, ParametricSurface, Tube, area, is_revolution};
 use glam::DVec3;
 use relax::{Effort, Ends, Mark, Relaxer};
 use rows::Rows;
@@ -51,7 +51,7 @@ pub fn generate(tube: &Tube, gauge: &Gauge, options: &Options, sink: &mut Sink<'
     let turned = Turned::to_slowest_side(&*tube.surface);
     let surface: &dyn ParametricSurface = &turned;
     let ends = [tube.start, tube.end];
-    let expected = area(surface) / (gauge.width * gauge.height);
+    let expected = area(surface, 10, 16) / (gauge.width * gauge.height);
     if !expected.is_finite() {
         return fail(
             sink,
@@ -124,7 +124,7 @@ impl<'s> Ground<'s> {
     /// Even repeats on a surface of revolution, settled; with the stitches of the first row. `None` elsewhere.
     fn lay_evenly(&self, sink: &Sink<'_>) -> Option<(Sheet, usize)> {
         let Self { surface, rows, options, .. } = *self;
-        if !options.symmetric || !symmetric::is_revolution(surface) {
+        if !options.symmetric || !is_revolution(surface) {
             return None;
         }
         let rounds = rows.count as u32;
@@ -172,19 +172,4 @@ impl<'s> Ground<'s> {
             Outcome::Runaway => None,
         }
     }
-}
-
-/// Area by midpoint quadrature, good to a percent on smooth tubes.
-fn area(surface: &dyn ParametricSurface) -> f64 {
-    const ALONG: u32 = 48;
-    const AROUND: u32 = 16;
-    let mut sum = 0.0;
-    for i in 0..ALONG {
-        for k in 0..AROUND {
-            let u = (f64::from(i) + 0.5) / f64::from(ALONG);
-            let jet = surface.jet(u, f64::from(k) / f64::from(AROUND));
-            sum += jet.du.cross(jet.dv).length();
-        }
-    }
-    sum / f64::from(ALONG * AROUND)
 }

@@ -20,22 +20,6 @@ const BAND: f64 = 0.16;
 const BAND_LEAST: f64 = 3.0;
 const BAND_MOST: f64 = 160.0;
 
-/// True when lengths on the surface do not depend on v: then every round is the same all around.
-pub(crate) fn is_revolution(surface: &dyn ParametricSurface) -> bool {
-    (0..16).all(|i| {
-        let u = (f64::from(i) + 0.5) / 16.0;
-        let first = surface.jet(u, 0.0);
-        let (e, g) = (first.du.length_squared(), first.dv.length_squared());
-        let tolerance = 1e-6;
-        (0..8).all(|k| {
-            let jet = surface.jet(u, f64::from(k) / 8.0);
-            (jet.du.length_squared() - e).abs() <= tolerance * e
-                && (jet.dv.length_squared() - g).abs() <= tolerance * g
-                && jet.du.dot(jet.dv).abs() <= tolerance * (e * g).sqrt()
-        })
-    })
-}
-
 /// Stitches of each round, the first row included; `None` when no sequence of clean rounds follows the girth.
 /// `ring` fixes the first round.
 pub(crate) fn plan_counts(girths: &[f64], ring: Option<u32>) -> Option<Vec<u32>> {
