@@ -1,0 +1,271 @@
+//! Diagnostics of shapes and of what is made of them: E10 shape files, E11 the geometry of a shape, E13 the generator; W12 and N12 remarks on shapes.
+
+/// Hands its rows, behind those it is given, to the next table in the list.
+macro_rules! shape {
+    (($next:ident $($later:ident)*) $($rows:tt)*) => {
+        $next! { ($($later)*) $($rows)*
+/// An option of the generator is out of its range.
+///
+/// Wrong: `--set max-short-row=2`. Right: `--set max-short-row=0.5`.
+/// `picot build --help` names the options; the message names the range.
+OptionOutOfRange = "E1301", "an option is out of range";
+/// The tube is too short for its stitch: not even one round can be worked.
+///
+/// A tube needs at least two rows from end to end, a closed end half a row more.
+///
+/// Wrong: a tube 3 mm long with stitches 5 mm high.
+/// Right: a smaller stitch, or a longer tube.
+TooFewRows = "E1302", "too few rows";
+/// The surface cannot be covered: it folds over itself, jumps, or has no finite size.
+///
+/// Rows are laid at equal distance along the surface. Where it bends more sharply than its own radius allows, or where
+/// neighboring sections differ by far more than a row can follow, stitches run away.
+///
+/// Wrong: a tube of radius 3 around a bend of radius 1.
+/// Right: a wider bend, or a thinner tube.
+SurfaceBroken = "E1303", "the surface cannot be covered";
+/// The file is not TOML.
+///
+/// Shape files are written in TOML: `key = value` lines under `[table]` headers, texts in quotes, lists in brackets.
+///
+/// Wrong: `unit = cm`
+/// Right: `unit = "cm"`
+TomlSyntax = "E1001", "the file is not TOML";
+/// A key that a shape file does not know, often a slip of the finger.
+///
+/// Nothing is skipped in silence: a misspelled key would change the object. The keys are listed in `grammar/shape.md`.
+///
+/// Wrong: `sections = [{ at = 0, circle = 1 }]`
+/// Right: `section = [{ at = 0, circle = 1 }]`
+UnknownKey = "E1002", "unknown key";
+/// A key that must be there is missing.
+///
+/// A shape file needs `[gauge]` and `[trunk]`; a trunk needs `curve` and `section`; a section needs `at`.
+///
+/// Wrong: `section = [{ circle = 1 }]`
+/// Right: `section = [{ at = 0, circle = 1 }]`
+MissingKey = "E1003", "a key is missing";
+/// A value has another type than the key takes.
+///
+/// Numbers stand without quotes and without a unit: the unit of all lengths is the file's `unit`.
+///
+/// Wrong: `circle = "2 cm"`
+/// Right: `circle = 2`
+WrongType = "E1004", "a value of the wrong type";
+/// A word that is none of those that the key takes.
+///
+/// `unit` is mm, cm or in; `start` and `end` are open or closed; `interpolation` is linear or smooth.
+///
+/// Wrong: `end = "close"`
+/// Right: `end = "closed"`
+UnknownWord = "E1005", "not one of the possible words";
+/// A number that is no size: not a number, infinite, or beyond 10 km.
+///
+/// Wrong: `circle = nan`
+/// Right: `circle = 1.5`
+BadNumber = "E1006", "not a usable number";
+/// The file does not say how large a stitch is.
+///
+/// The same shape takes other stitches in other yarn, so a gauge is needed, in one of three ways: measured on a
+/// swatch (best), as the size of a stitch, or as yarn and hook (an estimate).
+///
+/// Wrong: no `[gauge]`, or an empty one.
+/// Right: `[gauge]` and `swatch = { width = 6, height = 5.5, stitches = 10, rows = 10 }`
+GaugeMissing = "E1007", "the gauge is missing";
+/// The gauge is given in more than one way.
+///
+/// `stitch`, `swatch` and `yarn` each say how large a stitch is; two of them may disagree.
+///
+/// Wrong: `stitch = { width = 0.6, height = 0.55 }` and `yarn = { weight = 4, hook = "5 mm" }`
+/// Right: one of the two.
+GaugeConflict = "E1008", "the gauge is given more than once";
+/// A section has no profile, or more than one.
+///
+/// A section is a `circle` with a radius, an `ellipse` with two, or a `loop` of points.
+///
+/// Wrong: `{ at = 0, circle = 1, ellipse = [1, 2] }`
+/// Right: `{ at = 0, ellipse = [1, 2] }`
+SectionForm = "E1009", "a section needs exactly one profile";
+/// A point has too few or too many numbers.
+///
+/// Points of a curve have three numbers, those of a loop two or three, an `offset` or an `ellipse` two.
+///
+/// Wrong: `curve = [[0, 0], [0, 10]]`
+/// Right: `curve = [[0, 0, 0], [0, 0, 10]]`
+PointForm = "E1010", "a point with the wrong number of coordinates";
+/// A curve segment has one point only, or more than four.
+///
+/// Two points are a straight line, three a quadratic, four a cubic Bézier segment. A longer curve is a list of
+/// segments, each starting where the one before ends.
+///
+/// Wrong: `curve = [[0, 0, 0], [0, 0, 1], [0, 0, 2], [0, 0, 3], [0, 0, 4]]`
+/// Right: `curve = [[[0, 0, 0], [0, 0, 2]], [[0, 0, 2], [0, 0, 4]]]`
+CurveDegree = "E1011", "a curve segment has 2 to 4 points";
+/// A key or a table is given twice.
+///
+/// Two `[gauge]` tables, or two `curve` lines in one table, leave open which is meant.
+///
+/// Wrong: `unit = "cm"` and further down `unit = "mm"`
+/// Right: one of the two.
+DuplicateKey = "E1012", "a key is given twice";
+/// Branches are not made yet.
+///
+/// The keys of `[[branch]]` are read and checked, but no pattern comes of them. Until it does, make the branch a
+/// shape of its own and sew it on, as most toys are made.
+///
+/// Wrong: `[[branch]]` with `name = "arm"` in `bear.toml`
+/// Right: a file `arm.toml` with the branch as its `[trunk]`
+BranchUnsupported = "E1013", "branches are not supported yet";
+/// Meshes are not read yet.
+///
+/// The keys of `[mesh]` are read and checked, but no pattern comes of them. Describe the shape by a curve and
+/// sections, or by loops of points cut from the mesh.
+///
+/// Wrong: `[mesh]` with `file = "duck.obj"`
+/// Right: `[trunk]` with `curve` and `section`
+MeshUnsupported = "E1014", "meshes are not supported yet";
+/// A list is empty where something is needed.
+///
+/// Wrong: `section = []`
+/// Right: `section = [{ at = 0, circle = 1 }]`
+EmptyList = "E1015", "a list is empty";
+/// A yarn weight that the standard does not know.
+///
+/// Weights are 0 to 7 or their names: lace, super fine, fine, light, medium, bulky, super bulky, jumbo, and common
+/// other names such as sock, sport, dk, worsted, aran, chunky. Most labels show the number.
+///
+/// Wrong: `weight = "worstd"`
+/// Right: `weight = "worsted"` or `weight = 4`
+UnknownYarn = "E1016", "unknown yarn weight";
+/// A hook size that is neither millimeters nor a US size.
+///
+/// A bare number is refused: 8 is a hook of 8 mm, or a US size of 5 mm.
+///
+/// Wrong: `hook = 8`
+/// Right: `hook = "8 mm"`, `hook = "H-8"` or `hook = "US 8"`
+UnknownHook = "E1017", "unknown hook size";
+/// A list has more entries than Picot reads.
+///
+/// The caps keep memory and time in bounds for any input: 2048 segments, 1024 sections, 10,000 points of a loop.
+///
+/// Wrong: a `loop` of a million points for one round of 60 stitches.
+/// Right: a `loop` of 100 points.
+TooManyEntries = "E1018", "a list is too long";
+/// A name that cannot stand in a pattern.
+///
+/// The name becomes the title of the pattern, so it is one line of text.
+///
+/// Wrong: `name = ""`
+/// Right: `name = "Bear's ear"`
+BadName = "E1019", "not a usable name";
+/// A size is zero or negative.
+///
+/// Radii and stitch sizes are above zero. Only at a closed end a section may shrink to a point.
+///
+/// Wrong: `{ at = 1, circle = 0 }` with an open end
+/// Right: the same with `end = "closed"`
+SizeNotPositive = "E1101", "a size must be above zero";
+/// A stitch that can hardly be made: below 0.2 mm or above 100 mm. Mostly the unit is another one.
+///
+/// Wrong: `unit = "mm"` and `stitch = { width = 0.06, height = 0.055 }`
+/// Right: `unit = "cm"` and `stitch = { width = 0.6, height = 0.55 }`
+StitchSize = "E1102", "an impossible stitch size";
+/// A section lies outside of the curve.
+///
+/// `at` is the curve parameter from 0 to 1, not a length.
+///
+/// Wrong: `{ at = 12, circle = 1 }`
+/// Right: `{ at = 1, circle = 1 }`
+SectionPlace = "E1103", "a section lies outside of the curve";
+/// Sections are not listed from the start of the curve to its end, or two lie at the same place.
+///
+/// Wrong: `section = [{ at = 1, circle = 1 }, { at = 0, circle = 2 }]`
+/// Right: `section = [{ at = 0, circle = 2 }, { at = 1, circle = 1 }]`
+SectionOrder = "E1104", "sections are out of order";
+/// A loop of points does not run around once.
+///
+/// The points of a loop go around the tube in order, without crossing, and the loop is closed by itself.
+///
+/// Wrong: `loop = [[1, 0], [-1, 0], [0, 1], [0, -1]]`, which crosses itself
+/// Right: `loop = [[1, 0], [0, 1], [-1, 0], [0, -1]]`
+SectionLoop = "E1105", "a loop does not run around once";
+/// All points of a curve segment are the same, so it has no direction.
+///
+/// Wrong: `curve = [[0, 0, 0], [0, 0, 0]]`
+/// Right: `curve = [[0, 0, 0], [0, 0, 10]]`
+SegmentLength = "E1106", "a curve segment has no length";
+/// A curve segment does not start where the one before ends.
+///
+/// Wrong: `curve = [[[0, 0, 0], [0, 0, 4]], [[0, 0, 5], [0, 0, 9]]]`
+/// Right: `curve = [[[0, 0, 0], [0, 0, 4]], [[0, 0, 4], [0, 0, 9]]]`
+CurveGap = "E1107", "curve segments do not meet";
+/// The curve has a corner, or turns back on the spot.
+///
+/// A tube cannot follow a corner: the last two points of a segment and the first two of the next lie in one line.
+///
+/// Wrong: `curve = [[[0, 0, 0], [0, 0, 5]], [[0, 0, 5], [5, 0, 5]]]`
+/// Right: `curve = [[0, 0, 0], [0, 0, 5], [5, 0, 5]]`, which rounds the corner
+CurveKink = "E1108", "the curve has a corner";
+/// The curve bends so tightly that the tube folds into itself on the inner side.
+///
+/// Curvature x radius must stay below 1: the bend is wider than the tube.
+///
+/// Wrong: a tube of radius 3 along `curve = [[0, 0, 0], [0, 0, 4], [4, 0, 4]]`
+/// Right: radius 1 along it, or a curve twice as wide.
+CurveTooTight = "E1109", "the curve is too tight for the tube";
+/// The tube runs through itself.
+///
+/// Two places of the curve come nearer to each other than the tube is thick. Yarn cannot pass through a fabric.
+///
+/// Wrong: a curve that closes a circle, with ends inside one another
+/// Right: a horseshoe with room between its ends.
+TubeCrossesItself = "E1110", "the tube runs through itself";
+/// The tube is thinner than four stitches around.
+///
+/// Fewer than four stitches cannot be worked in the round. Closed ends may shrink to a point, of course.
+///
+/// Wrong: `circle = 0.2` (cm) with a stitch 0.6 cm wide, 2 stitches around
+/// Right: `circle = 0.6`, 6 stitches around, or a finer yarn.
+ShapeTooNarrow = "E1111", "the tube is too narrow for the stitch";
+/// The shape is shorter than two rows.
+///
+/// Wrong: a tube of 0.8 cm with stitches 0.55 cm high
+/// Right: 1.1 cm and more, or a finer yarn.
+ShapeTooShort = "E1112", "the shape is too short for the stitch";
+/// The shape takes more stitches than can be handled. Mostly the unit is another one.
+///
+/// Wrong: `unit = "in"` for a ball of radius 500 with stitches of `width = 0.01`
+/// Right: `unit = "mm"` and the gauge in mm.
+ShapeTooLarge = "E1113", "the shape is too large for the stitch";
+/// The gauge is a guess from yarn and hook.
+///
+/// Hands differ: sizes may be off by 15 % within the usual hooks of a yarn and 20 % outside of them. Toys are worked
+/// with small hooks on purpose, so out of range is normal. A swatch of 10 x 10 stitches replaces the guess.
+///
+/// Estimated: `yarn = { weight = "worsted", hook = "3.5 mm" }`
+/// Measured: `swatch = { width = 4.7, height = 4.1, stitches = 10, rows = 10 }`
+GaugeEstimated = "W1201", "the gauge is estimated";
+/// The standard counts lace weight in double crochet, so that a single crochet is guessed from another stitch.
+///
+/// Estimated: `yarn = { weight = 0, hook = "1.5 mm" }`
+/// Measured: `swatch = { width = 2.4, height = 2.1, stitches = 10, rows = 10 }`
+LaceGauge = "W1202", "the gauge of lace weight is weak";
+/// The object is smaller than 8 mm or larger than 3 m. Mostly the unit is another one.
+///
+/// Wrong: `unit = "in"` for a ball with `circle = 80`, 4 m across
+/// Right: `unit = "mm"`
+UnlikelySize = "W1203", "an unlikely size";
+/// The file names no unit, so its lengths are taken as millimeters.
+///
+/// Wrong: `circle = 4`, meant as 4 cm, without a unit
+/// Right: `unit = "cm"` at the top of the file.
+UnitAssumed = "N1204", "the unit is assumed";
+/// A file has more findings than are shown. The first ones matter most: later ones often follow from them.
+///
+/// Shown: the first 64 findings of a file.
+/// Hidden: the rest, which a second run shows when the first are mended.
+MoreFindings = "N1205", "more findings are not shown";
+        }
+    };
+}
+pub(super) use shape;
