@@ -134,6 +134,11 @@ pub fn program(shape: &Shape, options: &Options, sink: &mut Sink<'_>) -> Option<
         pattern: Pattern::default(),
         graphs: Vec::new(),
     };
+    if let Some(tube) = shape.tubes.iter().find(|tube| tube.attachment.is_some()) {
+        let message = "branches are not supported yet".to_owned();
+        sink.push(Diagnostic::new(Code::BranchUnsupported, message).in_round(&tube.name, None));
+        return None;
+    }
     for tube in &shape.tubes {
         sink.stage("generate");
         let mut graph = generate::generate(tube, &shape.gauge, &options.generate, sink)?;

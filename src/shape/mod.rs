@@ -65,26 +65,69 @@ pub enum End {
     Closed,
 }
 
+/// How a tube hangs on the tube that it grows from (paper, sections 3.1 and 3.4: sub-shapes and their merging).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Joint {
+    /// A branch that leaves the side of its parent. The loop S(0, v) lies on the surface of the parent, where the two
+    /// tubes meet; it need not be planar. The parent is a whole tube, and the branch is worked into its stitches
+    /// along that loop (the paper's interlocking).
+    Surface,
+    /// As `Surface`, but the parent is worked with a slit that opens into the branch: stitches of one of its rounds are
+    /// held for the branch, and the parent goes on over chains. The branch begins on the held loops and the
+    /// other side of the chains.
+    Opening,
+    /// The parent ends where its last loop divides among two or more children, as a pair of trousers does. All children
+    /// of that parent with this joint share its last loop S(1, v): each begins with a loop S(0, v) of its own beside
+    /// it, picks up the open loops of the parent that are nearest, and goes on over chains where it leaves the parent's
+    /// loop to close on itself. The end of such a parent is [`End::Open`].
+    Split,
+}
+
+/// Where a tube grows from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Attachment {
+    /// Index of the parent in [`Shape::tubes`]; less than that of the tube itself.
+    pub parent: usize,
+    /// How the two are joined.
+    pub joint: Joint,
+}
+
 /// One tube of an object.
 #[derive(Debug)]
 pub struct Tube {
-    /// Name of the part.
+    /// Name of the part; no other tube of the shape has it.
     pub name: String,
-    /// The surface in mm.
+    /// The surface in mm. Of a tube with a parent it is the visible part, which begins at the parent.
     pub surface: Box<dyn ParametricSurface>,
-    /// The end at u = 0.
+    /// The end at u = 0; [`End::Open`] where the tube has a parent.
     pub start: End,
     /// The end at u = 1.
     pub end: End,
+    /// The tube that it grows from; `None` for a tube that stands alone.
+    pub attachment: Option<Attachment>,
 }
 
-/// An object to make: its tubes (trunk first) and the maker's gauge.
+impl Tube {
+    /// A tube that stands alone.
+    pub fn new(name: impl Into<String>, surface: Box<dyn ParametricSurface>, ends: [End; 2]) -> Self {
+        Self { name: name.into(), surface, start: ends[0], end: ends[1], attachment: None }
+    }
+
+    /// The same tube, grown from another one of the shape: the `parent`-th.
+    #[must_use]
+    pub fn on(mut self, parent: usize, joint: Joint) -> Self {
+        self.attachment = Some(Attachment { parent, joint });
+        self
+    }
+}
+
+/// An object to make: a tree of tubes and the maker's gauge.
 #[derive(Debug)]
 pub struct Shape {
     /// Name of the object.
     pub name: String,
     /// Stitch size, in mm.
     pub gauge: Gauge,
-    /// The tubes.
+    /// The tubes in working order: the trunk first, each behind the one that it grows from.
     pub tubes: Vec<Tube>,
 }

@@ -28,12 +28,7 @@ pub(crate) fn shape(name: &str) -> Tube {
         start: End::Open,
         end: End::Open,
     };
-    Tube {
-        name: name.into(),
-        surface: Box::new(Sweep::new(&spec).expect("a sound tube")),
-        start: End::Open,
-        end: End::Open,
-    }
+    Tube::new(name, Box::new(Sweep::new(&spec).expect("a sound tube")), [End::Open; 2])
 }
 
 /// Figures of the published implementation. It takes tangents by differences over 0.05 of the curve parameter, so its
@@ -99,12 +94,7 @@ fn a_cylinder_measures_as_its_closed_form() {
         start: End::Open,
         end: End::Open,
     };
-    let tube = Tube {
-        name: "cylinder".into(),
-        surface: Box::new(Sweep::new(&spec).expect("a sound tube")),
-        start: End::Open,
-        end: End::Open,
-    };
+    let tube = Tube::new("cylinder", Box::new(Sweep::new(&spec).expect("a sound tube")), [End::Open; 2]);
     let net = capunaman(&tube, &gauge, &mut Sink::new()).expect("fits");
     assert_eq!((net.rows.len(), net.nodes.len(), net.unworkable_row()), (21, 800, None));
     let mut sampler = Sampler::new(gauge);

@@ -131,7 +131,7 @@ fn compile(spec: &TubeSpec, gauge: Gauge) -> Outcome {
             return Outcome::Refused(name.split([' ', '{']).next().unwrap_or_default().to_owned());
         }
     };
-    let tube = Tube { name: "trunk".into(), surface: Box::new(sweep), start: spec.start, end: spec.end };
+    let tube = Tube::new("trunk", Box::new(sweep), [spec.start, spec.end]);
     let mut sink = Sink::new();
     let Some(graph) = generate(&tube, &gauge, &Options::default(), &mut sink) else {
         let reason = sink.diagnostics().iter().find(|found| found.severity == Severity::Error);

@@ -19,7 +19,7 @@ use proptest::prelude::*;
 use serde_json::Value;
 
 fn tube(surface: impl ParametricSurface + 'static, start: End, end: End) -> Tube {
-    Tube { name: "trunk".into(), surface: Box::new(surface), start, end }
+    Tube::new("trunk", Box::new(surface), [start, end])
 }
 
 /// Shape D of the paper.

@@ -13,7 +13,7 @@ mod walk;
 
 use super::{Input, Reader};
 use crate::diag::{Code, Diagnostic, Sink, Source, Sources, Span};
-use crate::shape::Shape;
+use crate::shape::{Shape, Tube};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeTable;
@@ -144,7 +144,7 @@ fn document_of(walk: &mut Walk<'_>, document: &Spanned<DeTable<'_>>, file: &str)
     fit::check(walk, &surface, &places, &gauge, gauge_span).then(|| Shape {
         name,
         gauge,
-        tubes: vec![crate::shape::Tube { name: "trunk".to_owned(), surface: Box::new(surface), start, end }],
+        tubes: vec![Tube::new("trunk", Box::new(surface), [start, end])],
     })
 }
 
