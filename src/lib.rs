@@ -46,6 +46,7 @@ pub mod lower;
 pub mod math;
 pub mod metrics;
 pub mod passes;
+pub mod preview;
 pub mod settings;
 pub mod shape;
 

@@ -4,6 +4,7 @@ pub mod crochet;
 pub mod json;
 pub mod kcode;
 pub mod knitout;
+pub mod png;
 pub mod xml;
 
 use crate::diag::Sink;
@@ -107,6 +108,7 @@ pub static TARGETS: &[Target] = &[
     Target::of::<json::Json>(),
     Target::of::<kcode::Kcode>(),
     Target::of::<knitout::Knitout>(),
+    Target::of::<png::Png>(),
     Target::of::<xml::Xml>(),
 ];
 

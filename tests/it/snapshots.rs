@@ -41,7 +41,7 @@ fn compile(path: &Path) -> (Vec<(Vec<u8>, String)>, String) {
         && let Some(verified) = verify(program, &mut sink)
     {
         for target in TARGETS {
-            let backend = target.configure(toml::Table::new()).expect("defaults are sound");
+            let backend = target.configure(options(target.name)).expect("sound options");
             let mut bytes = Vec::new();
             let mut remarks = Sink::new();
             if let Err(error) = backend.emit(&verified, &mut bytes, &mut remarks) {
@@ -58,6 +58,12 @@ fn compile(path: &Path) -> (Vec<(Vec<u8>, String)>, String) {
     };
     let outputs = outputs.iter().map(|(bytes, remarks)| (bytes.clone(), messages(remarks))).collect();
     (outputs, messages(&sink))
+}
+
+/// Defaults, but for pictures, which are small here.
+fn options(target: &str) -> toml::Table {
+    let options = if target == "png" { "size = '160x120'\ndetail = 1" } else { "" };
+    options.parse().expect("TOML")
 }
 
 #[test]
