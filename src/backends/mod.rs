@@ -1,10 +1,12 @@
 //! Printers: from a verified program to bytes. A backend is one file and one line of [`TARGETS`].
 
 pub mod crochet;
+pub mod dot;
 pub mod json;
 pub mod kcode;
 pub mod knitout;
 pub mod png;
+pub mod svg;
 pub mod xml;
 
 use crate::diag::Sink;
@@ -105,10 +107,12 @@ impl Target {
 /// Every target.
 pub static TARGETS: &[Target] = &[
     Target::of::<crochet::Crochet>(),
+    Target::of::<dot::Dot>(),
     Target::of::<json::Json>(),
     Target::of::<kcode::Kcode>(),
     Target::of::<knitout::Knitout>(),
     Target::of::<png::Png>(),
+    Target::of::<svg::Svg>(),
     Target::of::<xml::Xml>(),
 ];
 

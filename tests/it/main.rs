@@ -2,7 +2,7 @@
 
 mod arbitrary;
 mod baseline;
-#[cfg(feature = "cli")]
+mod charts;
 mod cli;
 mod corpus;
 mod ebnf;

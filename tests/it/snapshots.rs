@@ -6,6 +6,7 @@ use picot::diag::position::Positions;
 use picot::diag::render::terminal::terminal;
 use picot::diag::{Sink, Sources};
 use picot::frontend::reader;
+use picot::ir::Program;
 use picot::ir::verify::verify;
 use serde_json::Value;
 use std::fmt::Write;
@@ -64,6 +65,15 @@ fn compile(path: &Path) -> (Vec<(Vec<u8>, String)>, String) {
 fn options(target: &str) -> toml::Table {
     let options = if target == "png" { "size = '160x120'\ndetail = 1" } else { "" };
     options.parse().expect("TOML")
+}
+
+/// The program of a shape file.
+pub(crate) fn program(path: &Path) -> Program {
+    let mut sources = Sources::new(&load);
+    let mut sink = Sink::new();
+    let source = sources.open(path.to_str().expect("plain names")).expect("readable");
+    let reader = reader("shape").expect("listed");
+    picot::compile(&source, reader, &picot::Options::default(), &mut sources, &mut sink).expect("it compiles")
 }
 
 #[test]
