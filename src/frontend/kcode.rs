@@ -1,7 +1,8 @@
 //! Reader of k-code (`.kc`), the format of the Kniterate, in its three dialects.
 //!
 //! Every pass becomes the instructions it stands for. Carriers come in before their first pass and go out after their
-//! last; moves of the carriage alone and of a carrier without stitches leave no trace, since Knitout implies them.
+//! last, and where a pass without stitches brings them to their parking place; other moves of the carriage alone and of
+//! a carrier leave no trace, since Knitout implies them.
 
 use super::{Input, Reader};
 use crate::diag::{Code as Finding, Diagnostic, Sink, Source, Sources, Span};
@@ -77,6 +78,8 @@ struct Pass {
     rack: Rack,
     /// Marked cells of both beds.
     cells: [Vec<i32>; 2],
+    /// The carrier ends at its parking place.
+    parked: bool,
     /// Stitch size at the first marked cell.
     size: Option<char>,
     span: Span,
@@ -227,6 +230,9 @@ impl<'a> Parser<'a, '_, '_> {
             sizes.as_bytes().get(MARGIN + cell).map(|&byte| char::from(byte))
         });
         let span = self.span(line);
+        let rests = front.marks.iter().find(|(_, mark)| mark.is_ascii_digit()).map(|(at, _)| *at);
+        let bare = front.cells.is_empty() && back.cells.is_empty();
+        let parked = bare && direction == Direction::Minus && rests == parking(carrier);
         let pass = Pass {
             direction,
             kind,
@@ -235,6 +241,7 @@ impl<'a> Parser<'a, '_, '_> {
             roller,
             rack: self.rack,
             cells: [front.cells, back.cells],
+            parked,
             size,
             span,
         };
@@ -404,24 +411,32 @@ fn number(text: &str) -> Option<f64> {
     if plain { text.parse().ok() } else { None }
 }
 
+/// Characters before the mark of a carrier that waits in its lane left of the bed.
+fn parking(carrier: u8) -> Option<usize> {
+    match carrier {
+        1 => Some(4),
+        2 | 3 => Some(6),
+        4..=6 => Some(8),
+        _ => None,
+    }
+}
+
 /// The program that the passes stand for.
 fn assemble(steps: &[Step<'_>]) -> Code {
     let mut code = Code::with_carriers((1..=6).map(|id| id.to_string()).collect());
     for (name, value) in [("Machine", "kniterate"), ("Gauge", "7"), ("Position", "Keep")] {
         code.set_header(name, value);
     }
-    let mut first = [usize::MAX; 7];
     let mut last = [0_usize; 7];
     for (at, step) in steps.iter().enumerate() {
         if let Step::Pass(pass) = step
             && pass.cells.iter().any(|cells| !cells.is_empty())
-            && let (Some(first), Some(last)) =
-                (first.get_mut(usize::from(pass.carrier)), last.get_mut(usize::from(pass.carrier)))
+            && let Some(last) = last.get_mut(usize::from(pass.carrier))
         {
-            *first = (*first).min(at);
             *last = at;
         }
     }
+    let mut inside = [false; 7];
     let mut writer = Assembler { code, rack: Rack::default(), settings: [None, None, None, None] };
     for (at, step) in steps.iter().enumerate() {
         match step {
@@ -434,11 +449,17 @@ fn assemble(steps: &[Step<'_>]) -> Code {
             Step::Pass(pass) => {
                 let id = usize::from(pass.carrier);
                 let set = CarrierSet::one(pass.carrier.saturating_sub(1));
-                if id > 0 && first.get(id) == Some(&at) {
+                let Some(inside) = inside.get_mut(id).filter(|_| id > 0) else {
+                    writer.pass(pass, set);
+                    continue;
+                };
+                if !*inside && pass.cells.iter().any(|cells| !cells.is_empty()) {
+                    *inside = true;
                     writer.code.push(Instruction::In(set), pass.span);
                 }
                 writer.pass(pass, set);
-                if id > 0 && first.get(id).is_some_and(|&first| first <= at) && last.get(id) == Some(&at) {
+                if *inside && (pass.parked || last.get(id) == Some(&at)) {
+                    *inside = false;
                     writer.code.push(Instruction::Out(set), pass.span);
                 }
             }

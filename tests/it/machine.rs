@@ -10,7 +10,7 @@ use picot::lower::machine::{Lowered, Options, lower, validate::validate};
 use proptest::prelude::*;
 use std::io;
 
-fn program(start: Start, rows: Vec<Vec<Op>>, finish: Finish) -> Program {
+pub(super) fn program(start: Start, rows: Vec<Vec<Op>>, finish: Finish) -> Program {
     let rows = rows.into_iter().map(|ops| Row::new(ops.into_iter().collect::<Block>())).collect();
     let part = Part { name: "body".to_owned(), start, rows, finish, flat: false, copies: 1 };
     Program {
@@ -22,11 +22,11 @@ fn program(start: Start, rows: Vec<Vec<Op>>, finish: Finish) -> Program {
     }
 }
 
-fn work(stitch: Stitch, times: u32) -> Op {
+pub(super) fn work(stitch: Stitch, times: u32) -> Op {
     Op::Work { stitch, times }
 }
 
-fn sc(times: u32) -> Op {
+pub(super) fn sc(times: u32) -> Op {
     work(Stitch::SC, times)
 }
 
@@ -43,11 +43,11 @@ fn ball() -> Program {
     program(Start::Ring { loops: 6 }, rows, Finish::DrawnShut)
 }
 
-fn machines() -> [Machine; 2] {
+pub(super) fn machines() -> [Machine; 2] {
     [Machine::named("swg091n2").unwrap(), Machine::named("kniterate").unwrap()]
 }
 
-fn lowered(program: &Program, machine: &Machine) -> Result<Lowered, Vec<String>> {
+pub(super) fn lowered(program: &Program, machine: &Machine) -> Result<Lowered, Vec<String>> {
     let mut sink = Sink::new();
     let options = Options { no_waste: true, ..Options::default() };
     lower(program, machine, &options, &mut sink).ok_or_else(|| {
@@ -58,20 +58,20 @@ fn lowered(program: &Program, machine: &Machine) -> Result<Lowered, Vec<String>>
     })
 }
 
-fn faults(program: &Program, code: &Code, machine: &Machine) -> Vec<String> {
+pub(super) fn faults(program: &Program, code: &Code, machine: &Machine) -> Vec<String> {
     let mut sink = Sink::new();
     validate(program, code, Some(machine), &Options::default(), &mut sink);
     sink.take().iter().map(|found| format!("{} {:?}", found.message, found.place)).collect()
 }
 
-fn text(code: &Code) -> String {
+pub(super) fn text(code: &Code) -> String {
     let mut bytes = Vec::new();
     knitout::write(code, &mut bytes).unwrap();
     String::from_utf8(bytes).unwrap()
 }
 
 /// Through k-code and back.
-fn through_kcode(code: &Code) -> Code {
+pub(super) fn through_kcode(code: &Code) -> Code {
     let mut bytes = Vec::new();
     let mut sink = Sink::new();
     kcode::write(code, &mut bytes, &mut sink).unwrap();
@@ -245,9 +245,6 @@ fn what_cannot_be_knit_is_refused_with_its_place() {
     let closing =
         ring(8, vec![vec![work(Stitch::DEC, 4)], vec![work(Stitch::DEC, 2)], vec![work(Stitch::DEC, 1)]]);
     assert!(reason(&closing, &swg).contains("too narrow"), "{}", reason(&closing, &swg));
-    let mut flat = ring(12, Vec::new());
-    flat.pattern.parts[0].flat = true;
-    assert!(reason(&flat, &swg).starts_with("E2201 the part is worked in rows"));
 }
 
 #[test]

@@ -9,6 +9,7 @@ mod ebnf;
 mod examples;
 mod grammar;
 mod knitout;
+mod limbs;
 mod loops;
 mod machine;
 mod metrics;

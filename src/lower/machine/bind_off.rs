@@ -2,6 +2,7 @@
 
 use super::emit::Emitter;
 use super::tube::{ItemId, Stuck, Tube};
+use crate::ir::machine::Bed;
 
 /// Loops of the tail after the last chain loop.
 pub(super) const TAIL: usize = 4;
@@ -10,12 +11,16 @@ const FLAT: usize = 12;
 
 /// Binds all loops off; returns the needle with the last chain loop.
 pub(super) fn bind_off(tube: &mut Tube, closed: bool, emitter: &mut Emitter) -> Result<ItemId, Stuck> {
-    if closed && tube.open.len() <= FLAT { flat(tube, emitter) } else { round(tube, emitter) }
+    if closed && tube.heading.is_none() && tube.ahead.len() <= FLAT {
+        flat(tube, emitter)
+    } else {
+        round(tube, emitter)
+    }
 }
 
 /// The chain runs along the round, and the tube stays open.
 fn round(tube: &mut Tube, emitter: &mut Emitter) -> Result<ItemId, Stuck> {
-    let order: Vec<ItemId> = tube.open.drain(..).collect();
+    let order: Vec<ItemId> = tube.ahead.drain(..).collect();
     let (&first, rest) = order.split_first().ok_or(Stuck::Underflow)?;
     tube.work(first, true, emitter);
     let mut last = first;
@@ -29,46 +34,35 @@ fn round(tube: &mut Tube, emitter: &mut Emitter) -> Result<ItemId, Stuck> {
 
 /// Front and back loops are taken together, which closes the tube, and the chain runs over the front bed.
 fn flat(tube: &mut Tube, emitter: &mut Emitter) -> Result<ItemId, Stuck> {
-    let slots = tube.slots();
-    let newest = tube.open.back().copied();
+    let newest = tube.ahead.back().copied();
+    // Where both beds have a loop, the front needle takes them; a back loop without partner is chained as it is.
+    let mut line: Vec<ItemId> = Vec::new();
     let mut pairs: Vec<(ItemId, ItemId)> = Vec::new();
-    let mut alone = Vec::new();
-    let mut fronts = Vec::new();
-    for &(front, back) in &slots {
-        match (front, back) {
-            (Some(front), Some(back)) => pairs.push((back, front)),
-            (None, Some(back)) => alone.push(back),
-            (_, None) => {}
+    for (front, back) in tube.slots() {
+        if let (Some(front), Some(back)) = (front, back) {
+            pairs.push((back, front));
         }
-        fronts.extend(front);
-    }
-    if fronts.is_empty() {
-        return Err(Stuck::Narrow);
+        line.extend(front.or(back));
     }
     // The yarn goes on at the end that is nearer to it.
     let yarn_at = newest.map_or(0, |id| tube.needle(id).index);
-    let (left, right) = (fronts.first().copied(), fronts.last().copied());
-    let distance =
-        |end: Option<ItemId>, tube: &Tube| end.map_or(i32::MAX, |id| (tube.needle(id).index - yarn_at).abs());
-    let to_left = distance(right, tube) <= distance(left, tube);
+    let distance = |end: Option<&ItemId>| end.map_or(i32::MAX, |&id| (tube.needle(id).index - yarn_at).abs());
+    let to_left = distance(line.last()) <= distance(line.first());
     for (back, front) in pairs {
         tube.gather(back, front, emitter)?;
     }
-    for back in alone {
-        let onto =
-            if tube.needle(back).index > right.map_or(0, |id| tube.needle(id).index) { right } else { left };
-        tube.gather(back, onto.ok_or(Stuck::Narrow)?, emitter)?;
-    }
     if to_left {
-        fronts.reverse();
+        line.reverse();
     }
-    tube.open.clear();
-    let (&first, rest) = fronts.split_first().ok_or(Stuck::Underflow)?;
-    tube.work(first, to_left, emitter);
+    tube.ahead.clear();
+    // The course runs to the left on the front bed and to the right on the back bed.
+    let forward = |tube: &Tube, id: ItemId| (tube.bed(id) == Bed::Front) == to_left;
+    let (&first, rest) = line.split_first().ok_or(Stuck::Underflow)?;
+    tube.work(first, forward(tube, first), emitter);
     let mut last = first;
     for &next in rest {
         tube.chain(last, next, emitter)?;
-        tube.work(next, to_left, emitter);
+        tube.work(next, forward(tube, next), emitter);
         last = next;
     }
     Ok(last)

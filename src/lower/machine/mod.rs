@@ -3,22 +3,36 @@
 //! What comes out is executed on the model of the machine before anyone sees it: a program that would break a rule is
 //! refused with the round and the stitch where it would.
 
+pub mod begin;
+mod bench;
 mod bind_off;
 mod emit;
 mod piece;
 pub mod plan;
+mod refuse;
+mod replay;
 mod tube;
+mod turning;
 pub mod validate;
+mod yarns;
 
 pub use emit::Origin;
 
 use crate::diag::{Code as Finding, Diagnostic, Sink, Span};
 use crate::ir::machine::{CarrierId, Code, Instruction, Machine, Report, execute};
-use crate::ir::{Part, Program, Start};
+use crate::ir::{Pattern, Program};
+use bench::Bench;
 use emit::Emitter;
+use refuse::Reason;
+use std::collections::{BTreeMap, BTreeSet};
+use tube::Stuck;
 
 /// Most loops that one stitch works together or makes in one place.
 pub const MOST_IN_ONE: u16 = 3;
+/// Most pieces of a program.
+const MAX_PIECES: u64 = 1000;
+/// Most wraps that are left out of one group of pieces.
+const MAX_UNWRAPPED: usize = 500;
 /// Most instructions of a program.
 const MAX_OPERATIONS: usize = 40_000_000;
 
@@ -52,27 +66,31 @@ pub fn lower(
 ) -> Option<Lowered> {
     let mut code = header(program, machine);
     let mut origins = Vec::new();
-    if !machine.bed.half_gauge {
-        refuse(
-            machine,
-            "bed.half_gauge",
-            "false",
-            "tubes need every second needle for their transfers",
-            sink,
+    let pieces = program.pattern.parts.iter().map(|part| u64::from(part.copies)).sum::<u64>();
+    if pieces > MAX_PIECES {
+        let message = format!("{pieces} pieces are more than one program can hold");
+        sink.push(
+            Diagnostic::new(Finding::TooLarge, message)
+                .help(format!("at most {MAX_PIECES}; run the program of one piece that often")),
         );
         return None;
     }
-    for (index, part) in program.pattern.parts.iter().enumerate() {
-        let mut emitter = piece::knit(index as u32, part, machine, options, sink)?;
+    if machine.rack.preferred.min(machine.rack.max) < 2.0 {
+        let what = "loops are moved to their neighbors by racks of 2 needles";
+        let (field, value) = if machine.rack.max < 2.0 {
+            ("rack.max", machine.rack.max)
+        } else {
+            ("rack.preferred", machine.rack.preferred)
+        };
+        refuse(machine, field, &value.to_string(), what, sink);
+        return None;
+    }
+    for group in begin::order(&program.pattern) {
+        let mut emitter = knit_group(&group, &program.pattern, machine, options, sink)?;
         if code.ops().len() + emitter.ops.len() > MAX_OPERATIONS {
             let message = format!("more than {MAX_OPERATIONS} instructions");
-            sink.push(Diagnostic::new(Finding::TooLarge, message).in_round(&part.name, None));
+            sink.push(Diagnostic::new(Finding::TooLarge, message));
             return None;
-        }
-        if part.copies > 1 {
-            code.remark(format!("make {} of this: {}", part.copies, part.name));
-        } else {
-            code.remark(format!("part: {}", part.name));
         }
         append(&mut code, &mut origins, &mut emitter, machine);
     }
@@ -86,6 +104,61 @@ pub fn lower(
             .help("each crochet stitch is a knit loop; take the gauge from a swatch knit on that machine"),
     );
     Some(Lowered { code, origins, report })
+}
+
+/// Knits the pieces of one group; `None` with the reason in the sink when the machine cannot.
+fn knit_group(
+    group: &[begin::Piece],
+    pattern: &Pattern,
+    machine: &Machine,
+    options: &Options,
+    sink: &mut Sink<'_>,
+) -> Option<Emitter> {
+    // Wraps that would overload a needle are left out. Which these are shows when the needle is next worked, so the
+    // group is knit again without them.
+    let mut unwrapped: BTreeMap<usize, BTreeSet<u32>> = BTreeMap::new();
+    let none = BTreeSet::new();
+    loop {
+        let mut bench = Bench::new(machine);
+        let mut heard = Sink::new();
+        let mut failed = None;
+        for (index, piece) in group.iter().enumerate() {
+            bench.emitter.remark(title(group, index, pattern));
+            let unwrapped = unwrapped.get(&index).unwrap_or(&none);
+            if let Err(reason) = piece::knit(*piece, pattern, &mut bench, options, unwrapped, &mut heard) {
+                failed = Some((index, reason));
+                break;
+            }
+        }
+        let again = match &failed {
+            Some((index, Reason::Stuck(Stuck::Stack(_, Some(turn))))) => {
+                let left_out: usize = unwrapped.values().map(BTreeSet::len).sum();
+                left_out < MAX_UNWRAPPED && unwrapped.entry(*index).or_default().insert(*turn)
+            }
+            _ => false,
+        };
+        if again {
+            continue;
+        }
+        heard.take().into_iter().for_each(|found| sink.push(found));
+        let Some((_, reason)) = failed else { return Some(bench.emitter) };
+        refuse::refuse(&reason, bench.emitter.origin, pattern, machine, sink);
+        return None;
+    }
+}
+
+/// What a piece is, for the one at the machine.
+fn title(group: &[begin::Piece], index: usize, pattern: &Pattern) -> String {
+    let of = |piece: &begin::Piece| group.get(index).is_some_and(|this| this.part == piece.part);
+    let part = group.get(index).and_then(|piece| pattern.parts.get(piece.part as usize));
+    let name = part.map_or("", |part| part.name.as_str()).replace(['\n', '\r'], " ");
+    let copies = group.iter().filter(|piece| of(piece)).count();
+    if copies > 1 {
+        let number = group.iter().take(index + 1).filter(|piece| of(piece)).count();
+        format!("part: {name}, {number} of {copies}")
+    } else {
+        format!("part: {name}")
+    }
 }
 
 fn header(program: &Program, machine: &Machine) -> Code {
@@ -160,9 +233,4 @@ fn refuse(machine: &Machine, field: &str, value: &str, what: &str, sink: &mut Si
 /// The place of a carrier in the header.
 fn carrier(machine: &Machine, name: &str) -> CarrierId {
     machine.carriers.names.iter().position(|known| known == name).unwrap_or(0) as CarrierId
-}
-
-/// True for a part whose first loops another part left.
-fn joined(part: &Part) -> bool {
-    matches!(part.start, Start::Join { .. })
 }

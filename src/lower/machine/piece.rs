@@ -1,143 +1,175 @@
-//! One part from cast-on to fasten-off: the driver that keeps the loops on the needles in the order of the pattern.
+//! One piece from its first loops to its end: the driver that keeps the loops on the needles in the order of the pattern.
 
+use super::begin::{self, Begin};
+use super::bench::Bench;
 use super::bind_off;
-use super::emit::{Emitter, Origin};
-use super::plan::{self, Leg, PLAIN};
+use super::emit::Origin;
+use super::plan::{self, Leg};
+use super::refuse::Reason;
 use super::tube::{ItemId, Stuck, Tube};
-use super::{Options, carrier, joined};
+use super::yarns::{Yarns, palette};
+use super::{Options, carrier};
 use crate::diag::{Code as Finding, Diagnostic, Sink};
-use crate::ir::machine::profile::{BringIn, Side, Waste};
+use crate::ir::machine::profile::{BringIn, Waste};
 use crate::ir::machine::{Bed, CarrierId, CarrierSet, Instruction, Machine};
-use crate::ir::{Direction, Finish, Part, Start};
-use std::collections::VecDeque;
+use crate::ir::{Direction, Finish, Part, PartId, Pattern};
+use std::collections::{BTreeSet, VecDeque};
 
-/// Knits a part; `None` with the reason in the sink when the machine cannot.
+/// Knits a piece on the bench. `unwrapped` are turns whose wrap would overload a needle; what went wrong comes back.
 pub(super) fn knit(
-    index: u32,
-    part: &Part,
-    machine: &Machine,
+    piece: begin::Piece,
+    pattern: &Pattern,
+    bench: &mut Bench<'_>,
     options: &Options,
+    unwrapped: &BTreeSet<u32>,
     sink: &mut Sink<'_>,
-) -> Option<Emitter> {
-    let mut piece = Piece {
+) -> Result<(), Reason> {
+    let Some(part) = pattern.parts.get(piece.part as usize) else { return Ok(()) };
+    bench.emitter.origin = Origin { part: piece.part, round: 0, stitch: 0 };
+    let machine = bench.machine;
+    let yarns = Yarns::new(machine, begin::first_color(part));
+    let worker = Worker {
         part,
-        machine,
+        id: PartId(piece.part),
+        kept: piece.kept,
+        pattern,
         options,
-        emitter: Emitter::default(),
-        yarn: carrier(machine, &machine.carriers.yarn),
-        from_right: machine.entry.parking == Side::Right,
+        bench,
+        yarns,
+        unwrapped,
         shapings: 0,
+        turns: 0,
     };
-    piece.emitter.origin = Origin { part: index, round: 0, stitch: 0 };
-    match piece.run(sink) {
-        Ok(()) => Some(piece.emitter),
-        Err(reason) => {
-            piece.refuse(&reason, sink);
-            None
-        }
-    }
+    worker.run(sink)
 }
 
-/// Why a part cannot be knit.
-enum Reason {
-    /// The sink has it.
-    Told,
-    Stuck(Stuck),
-    /// This many needles on each bed are needed.
-    Wide(i32),
-    /// A tube of this many loops.
-    Loops(u32),
-    Flat,
-    Joined,
-    Shapings(u32),
-    Depth(u32),
-}
-
-impl From<Stuck> for Reason {
-    fn from(stuck: Stuck) -> Self {
-        Self::Stuck(stuck)
-    }
-}
-
-struct Piece<'a> {
+struct Worker<'a, 'm> {
     part: &'a Part,
-    machine: &'a Machine,
+    id: PartId,
+    kept: bool,
+    pattern: &'a Pattern,
     options: &'a Options,
-    emitter: Emitter,
-    yarn: CarrierId,
-    from_right: bool,
+    bench: &'a mut Bench<'m>,
+    yarns: Yarns<'m>,
+    unwrapped: &'a BTreeSet<u32>,
     /// Increases and decreases of the current course.
     shapings: u32,
+    /// Turns so far.
+    turns: u32,
 }
 
-impl Piece<'_> {
-    fn run(&mut self, sink: &mut Sink<'_>) -> Result<(), Reason> {
-        if self.part.flat {
-            return Err(Reason::Flat);
-        }
-        if joined(self.part) {
-            return Err(Reason::Joined);
-        }
-        let (loops, skipped) = plan::cast_on(self.part);
-        self.emitter.origin.round = 1;
-        if loops < 2 {
-            return Err(Reason::Stuck(Stuck::Narrow));
-        }
-        if loops > self.machine.tube.max_loops {
-            return Err(Reason::Loops(loops));
-        }
-        let mut narrowest = loops;
-        let limit = self.machine.limits.loops_per_needle;
-        let mut tube = Tube::new(loops, self.from_right, limit, CarrierSet::one(self.yarn));
+impl<'m> Worker<'_, 'm> {
+    fn machine(&self) -> &'m Machine {
+        self.bench.machine
+    }
+
+    fn run(mut self, sink: &mut Sink<'_>) -> Result<(), Reason> {
+        let machine = self.machine();
+        let begin = begin::begin(self.pattern, self.part, self.options, sink).ok_or(Reason::Told)?;
+        self.bench.emitter.origin.round = 1;
         self.settings();
-        self.cast_on(&mut tube);
+        let skipped = if let Begin::Fresh { skipped, .. } = begin { skipped } else { 0 };
+        let mut tube = self.begin(&begin)?;
         self.wide()?;
-        let rows = self.part.numbered_rows().skip(skipped);
-        for (number, row) in rows {
+        let mut narrowest = tube.open_loops();
+        let mut color = begin::first_color(self.part);
+        for (number, row) in self.part.numbered_rows().skip(skipped) {
             for (copy, number) in (number..number.saturating_add(row.times)).enumerate() {
                 // Equal rows say the same of their stitches; once is enough.
                 let mut silent = Sink::new();
                 let heard = if copy == 0 { &mut *sink } else { &mut silent };
-                let plan = plan::row(self.part, row, number, self.options, heard).ok_or(Reason::Told)?;
-                self.emitter.origin.round = number;
+                let plan =
+                    plan::row(self.part, row, number, color, self.options, heard).ok_or(Reason::Told)?;
+                color = plan.color;
+                self.bench.emitter.origin.round = number;
                 self.shapings = 0;
-                let turns = plan.legs.len() / 2;
-                if self.machine.limits.short_row_depth > 0
-                    && 2 * turns > self.machine.limits.short_row_depth as usize
-                {
-                    self.depth(&plan.legs, tube.open.len())?;
+                let depth = machine.limits.short_row_depth;
+                if depth > 0 && plan.legs.len() > depth as usize {
+                    self.depth(&plan.legs, tube.ahead.len())?;
                 }
                 self.row(&mut tube, &plan.legs)?;
                 for _ in 0..plan.plain_rounds {
-                    let plain = Leg { direction: Direction::Forward, actions: vec![PLAIN; tube.open.len()] };
+                    let plain = Leg::plain(tube.ahead.len(), color);
                     self.row(&mut tube, &[plain])?;
                 }
-                narrowest = narrowest.min(tube.open.len() as u32);
+                narrowest = narrowest.min(tube.open_loops());
             }
         }
-        self.emitter.origin.stitch = 0;
-        self.finish(&mut tube)?;
-        self.wide()?;
-        if narrowest < self.machine.tube.min_loops {
+        self.bench.emitter.origin.stitch = 0;
+        if tube.heading.is_none() && narrowest < machine.tube.min_loops as usize {
             let message = format!("the tube narrows to {narrowest} loops");
-            let (least, name) = (self.machine.tube.min_loops, &self.machine.name);
+            let (least, name) = (machine.tube.min_loops, &machine.name);
             sink.push(
                 Diagnostic::new(Finding::NarrowTube, message)
                     .in_round(&self.part.name, None)
                     .help(format!("`tube.min_loops` of `{name}` is {least}; watch the take-down there")),
             );
         }
-        Ok(())
+        if self.kept {
+            self.yarns.finish(&mut self.bench.emitter);
+            self.bench.emitter.rest();
+            self.bench.leave(self.id, None, tube);
+        } else {
+            if !self.yarns.started() {
+                let plain = Leg::plain(tube.ahead.len(), color);
+                self.row(&mut tube, &[plain])?;
+            }
+            self.finish(&mut tube)?;
+        }
+        self.wide()
+    }
+
+    /// The first loops on their needles.
+    fn begin(&mut self, begin: &Begin) -> Result<Tube, Reason> {
+        let (machine, from_right) = (self.machine(), self.bench.from_right);
+        if usize::from(begin::first_color(self.part)) >= palette(machine).len() {
+            return Err(Reason::Colors(u32::from(begin::first_color(self.part)) + 1));
+        }
+        let (loops, closed) = match begin {
+            Begin::Join(_) if self.part.flat => return Err(Reason::FlatJoin),
+            Begin::Join(sources) => return self.bench.join(sources, self.id, &mut self.yarns),
+            &Begin::Fresh { loops, closed, .. } => (loops, closed),
+        };
+        let yarn = CarrierSet::one(self.yarns.carrier());
+        let [first, last] = machine.bed.needles;
+        if self.part.flat {
+            if i64::from(loops) > i64::from(last) - i64::from(first) + 1 {
+                return Err(Reason::Wide(loops.min(i32::MAX as u32) as i32));
+            }
+            let mut sheet = Tube::sheet(loops, from_right, self.bench.bounds(), yarn);
+            if loops == 0 {
+                return Err(Stuck::Underflow.into());
+            }
+            self.cast_on(&mut sheet, false);
+            sheet.behind = std::mem::take(&mut sheet.ahead);
+            sheet.end_row();
+            return Ok(sheet);
+        }
+        if !machine.bed.half_gauge {
+            return Err(Reason::FullGauge);
+        }
+        if loops < 2 {
+            return Err(Stuck::Narrow.into());
+        }
+        if loops > machine.tube.max_loops {
+            return Err(Reason::Loops(loops));
+        }
+        let mut tube = Tube::new(loops, from_right, self.bench.bounds(), yarn);
+        self.bench.place_new(&mut tube);
+        self.bench.yarn_reaches(&tube)?;
+        self.cast_on(&mut tube, closed);
+        Ok(tube)
     }
 
     /// Stitch size, speed and take-down where the profile has them.
     fn settings(&mut self) {
-        let machine = self.machine;
+        let machine = self.machine();
+        let emitter = &mut self.bench.emitter;
         let mut say = |name: &str, value: Option<u32>| {
             if let Some(value) = value
                 && machine.extensions.iter().any(|known| known == name)
             {
-                self.emitter.extension(format!("{name} {value}"));
+                emitter.extension(format!("{name} {value}"));
             }
         };
         let sizes = machine.stitch_number.as_ref();
@@ -147,314 +179,296 @@ impl Piece<'_> {
         say("x-roller-advance", machine.roller.as_ref().map(|roller| roller.default));
     }
 
-    fn cast_on(&mut self, tube: &mut Tube) {
-        let circle: Vec<ItemId> = tube.open.iter().copied().collect();
-        let waste = self.machine.waste.clone().filter(|waste| waste.rows > 0 && !self.options.no_waste);
+    fn cast_on(&mut self, tube: &mut Tube, closed: bool) {
+        let machine = self.machine();
+        let circle: Vec<ItemId> = tube.ahead.iter().copied().collect();
+        let yarn = self.yarns.carrier();
+        let waste = machine.waste.as_ref().filter(|waste| waste.rows > 0 && !self.options.no_waste);
         if let Some(waste) = waste {
-            self.waste(&waste, tube, &circle);
-            self.emitter.remark("the piece; unravel the waste by pulling the draw thread".to_owned());
-            self.bring_in(self.yarn);
+            self.waste(waste, tube, &circle);
+            self.bench.emitter.remark("the piece; unravel the waste by pulling the draw thread".to_owned());
+            Yarns::bring_in(machine, yarn, &mut self.bench.emitter);
         } else {
-            self.bring_in(self.yarn);
-            let closed = matches!(self.part.start, Start::Chain { joined: false, .. });
-            let tucks = if closed { self.closed(tube) } else { every_second(&circle) };
-            for (id, direction) in tucks.iter().map(|&id| (id, true)) {
-                let forward = direction != (closed && self.against_course(tube, &tucks, id));
-                self.emitter.tuck(tube.direction(id, forward), tube.needle(id), CarrierSet::one(self.yarn));
+            Yarns::bring_in(machine, yarn, &mut self.bench.emitter);
+            let tucks = if closed { self.closed(tube) } else { every_second(&circle, tube) };
+            for &(id, forward) in &tucks {
+                self.bench.emitter.tuck(tube.direction(id, forward), tube.needle(id), CarrierSet::one(yarn));
             }
         }
-        self.plain_round(tube, &circle, self.yarn);
+        self.plain_course(tube, &circle, yarn, true);
+        if let Some(&last) = circle.last() {
+            self.yarns.stands_at(tube.needle(last).index);
+        }
     }
 
-    /// In a closed cast-on both beds are tucked in one pass, so on one of them against the course.
-    fn against_course(&self, tube: &Tube, tucks: &[ItemId], id: ItemId) -> bool {
-        let half = tucks.len().div_ceil(2);
-        let first_pass = tucks.iter().take(half).any(|&tuck| tuck == id);
-        let first_bed = if self.from_right { Bed::Front } else { Bed::Back };
-        (tube.bed(id) == first_bed) != first_pass
-    }
-
-    /// Items in the order of a closed cast-on: away from the yarn on alternating beds, and back over the others.
-    fn closed(&self, tube: &Tube) -> Vec<ItemId> {
+    /// Items in the order of a closed cast-on: away from the yarn on alternating beds, and back over the others. With
+    /// each, whether it is tucked along the course: one bed of each pass is not.
+    fn closed(&self, tube: &Tube) -> Vec<(ItemId, bool)> {
+        let from_right = self.bench.from_right;
         let mut slots = tube.slots();
-        if self.from_right {
+        if from_right {
             slots.reverse();
         }
         let (mut there, mut back) = (Vec::new(), Vec::new());
         for (place, &(front, rear)) in slots.iter().enumerate() {
-            let (first, second) =
-                if (place % 2 == 0) == self.from_right { (front, rear) } else { (rear, front) };
+            let (first, second) = if (place % 2 == 0) == from_right { (front, rear) } else { (rear, front) };
             there.extend(first);
             back.extend(second);
         }
-        // The two passes are told apart by their length, so a missing partner at the edge goes with the first.
+        // A missing partner at the edge goes with the first pass.
         while there.len() < back.len() {
             let Some(id) = back.pop() else { break };
             there.push(id);
         }
         back.reverse();
-        there.into_iter().chain(back).collect()
+        let near = if from_right { Bed::Front } else { Bed::Back };
+        let first = there.into_iter().map(|id| (id, tube.bed(id) == near));
+        let second = back.into_iter().map(|id| (id, tube.bed(id) != near));
+        first.chain(second).collect()
     }
 
-    fn bring_in(&mut self, yarn: CarrierId) {
-        let set = CarrierSet::one(yarn);
-        self.emitter.rest();
-        self.emitter.push(match self.machine.entry.bring_in {
-            BringIn::Hook => Instruction::InHook(set),
-            BringIn::Gripper => Instruction::In(set),
-        });
-    }
-
-    fn take_out(&mut self, yarn: CarrierId) {
-        let set = CarrierSet::one(yarn);
-        self.emitter.push(match self.machine.entry.bring_in {
-            BringIn::Hook => Instruction::OutHook(set),
-            BringIn::Gripper => Instruction::Out(set),
-        });
-    }
-
-    /// A round of plain loops; the hook lets go after its first bed.
-    fn plain_round(&mut self, tube: &mut Tube, circle: &[ItemId], yarn: CarrierId) {
+    /// A course of plain loops; where `hooked`, the hook lets go after its first bed.
+    fn plain_course(&mut self, tube: &mut Tube, circle: &[ItemId], yarn: CarrierId, hooked: bool) {
         tube.set_carriers(CarrierSet::one(yarn));
-        let hook = self.machine.entry.bring_in == BringIn::Hook;
+        let mut held = hooked && self.machine().entry.bring_in == BringIn::Hook;
         let first = circle.first().map(|&id| tube.bed(id));
-        let mut held = hook;
         for &id in circle {
             if held && first != Some(tube.bed(id)) {
                 held = false;
-                self.emitter.push(Instruction::ReleaseHook(CarrierSet::one(yarn)));
+                self.bench.emitter.push(Instruction::ReleaseHook(CarrierSet::one(yarn)));
             }
-            tube.work(id, true, &mut self.emitter);
+            tube.work(id, true, &mut self.bench.emitter);
         }
         if held {
-            self.emitter.push(Instruction::ReleaseHook(CarrierSet::one(yarn)));
+            self.bench.emitter.push(Instruction::ReleaseHook(CarrierSet::one(yarn)));
         }
     }
 
     fn waste(&mut self, waste: &Waste, tube: &mut Tube, circle: &[ItemId]) {
-        let (yarn, draw) = (carrier(self.machine, &waste.carrier), carrier(self.machine, &waste.draw));
-        self.emitter.remark("waste section".to_owned());
-        self.bring_in(yarn);
-        for id in every_second(circle) {
-            self.emitter.tuck(tube.direction(id, true), tube.needle(id), CarrierSet::one(yarn));
+        let machine = self.machine();
+        let (yarn, draw) = (carrier(machine, &waste.carrier), carrier(machine, &waste.draw));
+        let heading = tube.heading;
+        self.bench.emitter.remark("waste section".to_owned());
+        Yarns::bring_in(machine, yarn, &mut self.bench.emitter);
+        for (id, forward) in every_second(circle, tube) {
+            self.bench.emitter.tuck(tube.direction(id, forward), tube.needle(id), CarrierSet::one(yarn));
         }
-        for round in 0..waste.rows {
-            if round == 0 {
-                self.plain_round(tube, circle, yarn);
-            } else {
-                for &id in circle {
-                    tube.work(id, true, &mut self.emitter);
-                }
-            }
+        let back: Vec<ItemId> = circle.iter().rev().copied().collect();
+        for course in 0..waste.rows {
+            let turned = heading.is_some() && course % 2 == 1;
+            self.plain_course(tube, if turned { &back } else { circle }, yarn, course == 0);
+            tube.heading = tube.heading.map(crate::ir::machine::Direction::reverse);
         }
-        self.take_out(yarn);
-        self.emitter.remark("draw thread".to_owned());
-        self.bring_in(draw);
-        self.plain_round(tube, circle, draw);
-        self.take_out(draw);
+        tube.heading = heading;
+        Yarns::take_out(machine, yarn, &mut self.bench.emitter);
+        self.bench.emitter.remark("draw thread".to_owned());
+        Yarns::bring_in(machine, draw, &mut self.bench.emitter);
+        self.plain_course(tube, circle, draw, true);
+        Yarns::take_out(machine, draw, &mut self.bench.emitter);
     }
 
     /// Works the legs of one row.
     fn row(&mut self, tube: &mut Tube, legs: &[Leg]) -> Result<(), Reason> {
-        self.emitter.origin.stitch = 0;
+        self.bench.emitter.origin.stitch = 0;
+        let growth: i32 = legs
+            .iter()
+            .flat_map(|leg| &leg.actions)
+            .map(|action| i32::from(action.makes) - i32::from(action.works))
+            .filter(|growth| *growth > 0)
+            .sum();
+        self.bench.make_room(tube, growth + 2);
         for (index, leg) in legs.iter().enumerate() {
-            let forward = leg.direction == Direction::Forward;
-            let tops = self.leg(tube, leg)?;
-            if forward {
-                tube.open.extend(tops);
-            } else {
-                for top in tops {
-                    tube.open.push_front(top);
-                }
+            if let Some((loops, by)) = leg.hold {
+                self.yarns.settle(&mut self.bench.emitter);
+                // The limb nearest to the yarn goes on, so what waits lies at the far edge.
+                let far_left = self.bench.from_right;
+                self.bench.make_room(tube, 2);
+                let aside = tube.set_aside(loops, far_left, &mut self.bench.emitter)?;
+                self.bench.leave(self.id, Some(by), aside);
+                self.wide()?;
             }
+            self.leg(tube, leg)?;
             self.wide()?;
-            if index + 1 < legs.len() {
-                let next = if forward { tube.open.front() } else { tube.open.back() };
-                if let Some(&next) = next {
-                    tube.wrap(next, forward, &mut self.emitter)?;
-                }
+            if legs.get(index + 1).is_some_and(|next| next.direction != leg.direction) {
+                self.wrap(tube, leg.direction == Direction::Forward)?;
             }
         }
-        let loops = tube.open.len() as u32;
-        if loops > self.machine.tube.max_loops {
+        self.yarns.settle(&mut self.bench.emitter);
+        tube.end_row();
+        let loops = tube.open_loops() as u32;
+        if tube.heading.is_none() && loops > self.machine().tube.max_loops {
             return Err(Reason::Loops(loops));
         }
         Ok(())
     }
 
-    /// Works one leg; returns the needles of its loops in working order.
-    fn leg(&mut self, tube: &mut Tube, leg: &Leg) -> Result<Vec<ItemId>, Reason> {
+    /// The wrap of a turn, on the loop that the leg would have come to next.
+    fn wrap(&mut self, tube: &mut Tube, forward: bool) -> Result<(), Reason> {
+        let turn = self.turns;
+        self.turns += 1;
+        let next = if forward {
+            tube.ahead.front()
+        } else {
+            tube.behind.back().or(if tube.heading.is_some() { tube.rest.front() } else { tube.ahead.back() })
+        };
+        match next {
+            Some(&next) if !self.unwrapped.contains(&turn) => {
+                let direction = tube.direction(next, forward);
+                Ok(tube.wrap(next, direction, Some(turn), &mut self.bench.emitter)?)
+            }
+            Some(_) => {
+                let why = "no wrap at this turn: its needle would hold too many loops";
+                self.bench.emitter.remark(why.to_owned());
+                Ok(())
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Works one leg.
+    fn leg(&mut self, tube: &mut Tube, leg: &Leg) -> Result<(), Reason> {
         let forward = leg.direction == Direction::Forward;
-        let base = self.emitter.origin.stitch;
-        let mut work: Vec<(ItemId, u16)> = Vec::with_capacity(leg.actions.len());
+        let base = self.bench.emitter.origin.stitch;
+        if leg.actions.iter().any(|action| action.works != 1 || action.makes != 1) {
+            self.yarns.settle(&mut self.bench.emitter);
+        }
+        // A needle with its stitch; `None` for chains, which have no needle yet.
+        let mut work: Vec<(Option<ItemId>, usize)> = Vec::with_capacity(leg.actions.len());
         let mut taken = VecDeque::new();
         for (at, action) in leg.actions.iter().enumerate() {
+            self.bench.emitter.origin.stitch = base + at as u32 + 1;
+            if usize::from(action.color) >= palette(self.machine()).len() {
+                return Err(Reason::Colors(u32::from(action.color) + 1));
+            }
             taken.clear();
             for _ in 0..action.works {
-                let next = if forward { tube.open.pop_front() } else { tube.open.pop_back() };
+                let next = if forward { tube.ahead.pop_front() } else { tube.behind.pop_back() };
                 taken.push_back(next.ok_or(Stuck::Underflow)?);
             }
-            self.emitter.origin.stitch = base + at as u32 + 1;
-            let Some(mut kept) = taken.pop_front() else { continue };
-            while let Some(next) = taken.pop_front() {
+            let mut kept = taken.pop_front();
+            while let (Some(before), Some(next)) = (kept, taken.pop_front()) {
                 self.count_shaping()?;
-                let (first, second) = if forward { (kept, next) } else { (next, kept) };
-                kept = tube.close(first, second, &mut self.emitter)?;
+                let (first, second) = if forward { (before, next) } else { (next, before) };
+                kept = Some(tube.close(first, second, &mut self.bench.emitter)?);
             }
-            work.push((kept, action.makes));
+            work.push((kept, at));
         }
-        let mut tops = Vec::with_capacity(work.len());
-        for (at, &(kept, makes)) in work.iter().enumerate() {
-            self.emitter.origin.stitch = base + at as u32 + 1;
+        let mut tops: Vec<(ItemId, usize)> = Vec::with_capacity(work.len());
+        for &(kept, at) in &work {
+            let Some(action) = leg.actions.get(at) else { continue };
+            self.bench.emitter.origin.stitch = base + at as u32 + 1;
             let from = tops.len();
-            for _ in 1..makes {
+            let before =
+                kept.or_else(|| tops.last().map(|(id, _)| *id)).or_else(|| tube.behind.back().copied());
+            let Some(before) = before else { return Err(Reason::NoLoopBefore) };
+            for _ in u16::from(kept.is_some())..action.makes {
                 self.count_shaping()?;
-                let ghost = tube.open(kept, &mut self.emitter)?;
+                let ghost = tube.open(before, &mut self.bench.emitter)?;
                 tops.insert(from, (ghost, at));
             }
-            tops.insert(from, (kept, at));
+            if let Some(kept) = kept {
+                tops.insert(from, (kept, at));
+            }
             if !forward && let Some(group) = tops.get_mut(from..) {
                 group.reverse();
             }
         }
         for &(id, at) in &tops {
-            self.emitter.origin.stitch = base + at as u32 + 1;
-            tube.work(id, forward, &mut self.emitter);
+            self.bench.emitter.origin.stitch = base + at as u32 + 1;
+            let color = leg.actions.get(at).map_or(0, |action| action.color);
+            self.yarns.stitch(tube, id, forward, color, &mut self.bench.emitter)?;
         }
-        Ok(tops.into_iter().map(|(id, _)| id).collect())
+        self.bench.emitter.origin.stitch = base + leg.actions.len() as u32;
+        let tops = tops.into_iter().map(|(id, _)| id);
+        if forward {
+            tube.behind.extend(tops);
+        } else {
+            tops.for_each(|top| tube.ahead.push_front(top));
+        }
+        Ok(())
     }
 
     fn count_shaping(&mut self) -> Result<(), Reason> {
         self.shapings += 1;
-        let limit = self.machine.limits.shapings_per_course;
+        let limit = self.machine().limits.shapings_per_course;
         if limit > 0 && self.shapings > limit { Err(Reason::Shapings(self.shapings)) } else { Ok(()) }
     }
 
     /// The most courses that some needles are knit while others wait, over the legs of one row.
     fn depth(&self, legs: &[Leg], open: usize) -> Result<(), Reason> {
-        let mut ahead: VecDeque<u32> = vec![0; open].into();
+        let (mut ahead, mut behind): (VecDeque<u32>, VecDeque<u32>) = (vec![0; open].into(), VecDeque::new());
         let mut deepest = 0;
         for leg in legs {
             let forward = leg.direction == Direction::Forward;
-            let mut tops = Vec::new();
+            let held = leg.hold.map_or(0, |(loops, _)| loops as usize).min(ahead.len());
+            ahead.drain(..held);
             for action in &leg.actions {
                 let taken = (0..action.works)
-                    .filter_map(|_| if forward { ahead.pop_front() } else { ahead.pop_back() })
+                    .filter_map(|_| if forward { ahead.pop_front() } else { behind.pop_back() })
                     .max()
                     .unwrap_or(0);
                 deepest = deepest.max(taken + 1);
-                tops.extend(std::iter::repeat_n(taken + 1, usize::from(action.makes)));
-            }
-            if forward {
-                ahead.extend(tops);
-            } else {
-                for top in tops {
-                    ahead.push_front(top);
+                for _ in 0..action.makes {
+                    if forward {
+                        behind.push_back(taken + 1);
+                    } else {
+                        ahead.push_front(taken + 1);
+                    }
                 }
             }
         }
-        if deepest > self.machine.limits.short_row_depth { Err(Reason::Depth(deepest)) } else { Ok(()) }
+        if deepest > self.machine().limits.short_row_depth { Err(Reason::Depth(deepest)) } else { Ok(()) }
     }
 
     fn wide(&self) -> Result<(), Reason> {
-        let [first, last] = self.machine.bed.needles;
-        match self.emitter.reach() {
+        let [first, last] = self.machine().bed.needles;
+        match self.bench.emitter.reach() {
             Some((left, right)) if right - left > last - first => Err(Reason::Wide(right - left + 1)),
             _ => Ok(()),
         }
     }
 
     fn finish(&mut self, tube: &mut Tube) -> Result<(), Reason> {
-        if let Some(sizes) = &self.machine.stitch_number
-            && self.machine.extensions.iter().any(|known| known == "x-stitch-number")
+        let machine = self.machine();
+        let emitter = &mut self.bench.emitter;
+        if let Some(sizes) = &machine.stitch_number
+            && machine.extensions.iter().any(|known| known == "x-stitch-number")
         {
-            self.emitter.extension(format!("x-stitch-number {}", sizes.bind_off));
+            emitter.extension(format!("x-stitch-number {}", sizes.bind_off));
         }
-        self.emitter.remark("bind off".to_owned());
+        emitter.remark("bind off".to_owned());
+        if let Some(heading) = tube.heading
+            && !tube.rest.is_empty()
+        {
+            // Loops that the last row left lie before the yarn; a plain course over them brings it to the end.
+            tube.heading = Some(heading.reverse());
+            let rest: Vec<ItemId> = tube.rest.drain(..).collect();
+            for &id in &rest {
+                tube.work(id, true, emitter);
+                tube.ahead.push_front(id);
+            }
+            tube.heading = Some(heading);
+        }
         let closed = self.part.finish == Finish::DrawnShut;
-        let last = bind_off::bind_off(tube, closed, &mut self.emitter)?;
+        let last = bind_off::bind_off(tube, closed, emitter)?;
         for step in 0..bind_off::TAIL {
-            tube.work(last, step % 2 == 1, &mut self.emitter);
+            tube.work(last, step % 2 == 1, emitter);
         }
-        self.take_out(self.yarn);
-        self.emitter.push(Instruction::Drop(tube.needle(last)));
-        self.emitter.rest();
+        self.yarns.finish(emitter);
+        emitter.push(Instruction::Drop(tube.needle(last)));
+        emitter.rest();
         Ok(())
-    }
-
-    fn refuse(&self, reason: &Reason, sink: &mut Sink<'_>) {
-        let (machine, name) = (self.machine, &self.machine.name);
-        let [first, last] = machine.bed.needles;
-        let limit = |field: &str, value: u32| format!("`{field}` of `{name}` is {value}");
-        let (finding, message, help) = match *reason {
-            Reason::Told => return,
-            Reason::Stuck(Stuck::Narrow) => (
-                Finding::BeyondMachine,
-                "the tube is too narrow to lie on two beds".to_owned(),
-                "4 loops are the least; close the tube earlier".to_owned(),
-            ),
-            Reason::Stuck(Stuck::Stack(loops)) => (
-                Finding::BeyondMachine,
-                format!("a needle would hold {loops} loops"),
-                format!(
-                    "{}; a plain round between decreases helps",
-                    limit("limits.loops_per_needle", machine.limits.loops_per_needle)
-                ),
-            ),
-            Reason::Stuck(Stuck::Underflow) => (
-                Finding::BrokenProgram,
-                "the row works loops that are not there".to_owned(),
-                "check the pattern first".to_owned(),
-            ),
-            Reason::Wide(needles) => (
-                Finding::BeyondMachine,
-                format!("{needles} needles are needed at half gauge; `{name}` has {}", last - first + 1),
-                format!(
-                    "`bed.needles` is {first} to {last}: the widest round this machine can hold is about {}; \
-                     use coarser stitches, or split the tube",
-                    last - first
-                ),
-            ),
-            Reason::Loops(loops) => (
-                Finding::BeyondMachine,
-                format!("the round has {loops} loops"),
-                format!(
-                    "{}, the widest round this machine can hold; use coarser stitches, or split the tube",
-                    limit("tube.max_loops", machine.tube.max_loops)
-                ),
-            ),
-            Reason::Flat => (
-                Finding::NotKnittable,
-                "the part is worked in rows that turn; only tubes are knit".to_owned(),
-                "work it in the round".to_owned(),
-            ),
-            Reason::Joined => (
-                Finding::NotKnittable,
-                "the part begins on loops of another part".to_owned(),
-                "only parts with a start of their own are knit".to_owned(),
-            ),
-            Reason::Shapings(count) => (
-                Finding::BeyondMachine,
-                format!("the course has {count} increases and decreases or more"),
-                limit("limits.shapings_per_course", machine.limits.shapings_per_course),
-            ),
-            Reason::Depth(courses) => (
-                Finding::BeyondMachine,
-                format!("needles wait while others knit {courses} courses"),
-                limit("limits.short_row_depth", machine.limits.short_row_depth),
-            ),
-        };
-        let Origin { round, stitch, .. } = self.emitter.origin;
-        let at = if stitch > 0 { format!(" at stitch {stitch}") } else { String::new() };
-        sink.push(
-            Diagnostic::new(finding, format!("{message}{at}"))
-                .in_round(&self.part.name, Some(round))
-                .help(help),
-        );
     }
 }
 
-/// Every second place of the circle, then the others: the tucks of an open cast-on hang in nothing but each other.
-fn every_second(circle: &[ItemId]) -> Vec<ItemId> {
-    circle.iter().step_by(2).chain(circle.iter().skip(1).step_by(2)).copied().collect()
+/// Every second place, then the others: the tucks of an open cast-on hang in nothing but each other. Around a tube both
+/// times along the course; along a flat piece there and back.
+fn every_second(circle: &[ItemId], tube: &Tube) -> Vec<(ItemId, bool)> {
+    let first = circle.iter().step_by(2).map(|&id| (id, true));
+    let others = circle.iter().skip(1).step_by(2);
+    if tube.heading.is_some() {
+        first.chain(others.rev().map(|&id| (id, false))).collect()
+    } else {
+        first.chain(others.map(|&id| (id, true))).collect()
+    }
 }

@@ -2,74 +2,91 @@
 
 use super::Options;
 use crate::diag::{Code as Finding, Diagnostic, Sink};
-use crate::ir::{Direction, Entry, Kind, Part, Row, Start, Step, Stitch};
+use crate::ir::{Direction, Entry, Kind, Part, PartId, Row, Step, Stitch};
 
-/// A run of stitches between two turns.
+/// A run of stitches without a turn and without loops set aside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Leg {
-    /// Direction of work.
+    /// Direction of work; another one than that of the leg before means a turn.
     pub direction: Direction,
+    /// Loops set aside for another part before the first stitch.
+    pub hold: Option<(u32, PartId)>,
     /// The stitches in working order.
     pub actions: Vec<Action>,
+}
+
+impl Leg {
+    fn new(direction: Direction) -> Self {
+        Self { direction, hold: None, actions: Vec::new() }
+    }
+
+    /// A plain course.
+    pub(super) fn plain(loops: usize, color: u16) -> Self {
+        Self { actions: vec![Action { color, ..PLAIN }; loops], ..Self::new(Direction::Forward) }
+    }
 }
 
 /// One stitch as the needles see it: loops that come together, and loops that are made of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Action {
-    /// Loops worked together; at least 1.
+    /// Loops worked together; 0 for chains, which are loops on empty needles.
     pub works: u16,
     /// Loops made; at least 1.
     pub makes: u16,
+    /// The color, as its place in the program's colors.
+    pub color: u16,
 }
 
 /// The plain stitch.
-pub const PLAIN: Action = Action { works: 1, makes: 1 };
+pub const PLAIN: Action = Action { works: 1, makes: 1, color: 0 };
 
 /// One row, ready to be knit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowPlan {
     /// Its legs; the first and the last are worked forward.
     pub legs: Vec<Leg>,
+    /// The color at its end.
+    pub color: u16,
     /// Plain rounds to be knit after it, which stand for the height of tall stitches.
     pub plain_rounds: u32,
 }
 
-/// Loops of the cast-on, and how many rows of the part it already stands for.
-pub fn cast_on(part: &Part) -> (u32, usize) {
-    let first_makes = || {
-        let steps = part.rows.first().map(|row| row.body.steps());
-        steps.into_iter().flatten().fold(0_u32, |sum, step| match step {
-            Step::Work(stitch) => sum.saturating_add(u32::from(stitch.makes)),
-            Step::Turn(_) | Step::Hold { .. } | Step::Leave { .. } | Step::Color(_) => sum,
-        })
-    };
-    match part.start.loops() {
-        0 if !matches!(part.start, Start::Join { .. }) => (first_makes(), 1),
-        loops => (loops, 0),
-    }
-}
-
-/// Plans one row. `None` with the reason in the sink when a stitch has no counterpart.
-pub fn row(part: &Part, row: &Row, number: u32, options: &Options, sink: &mut Sink<'_>) -> Option<RowPlan> {
-    let mut planner = Planner { part, number, options, sink, refused: false, stitch: 0 };
-    let mut legs = vec![Leg { direction: Direction::Forward, actions: Vec::new() }];
+/// Plans one row, begun in this color. `None` with the reason in the sink when a stitch has no counterpart.
+pub fn row(
+    part: &Part,
+    row: &Row,
+    number: u32,
+    color: u16,
+    options: &Options,
+    sink: &mut Sink<'_>,
+) -> Option<RowPlan> {
+    let mut planner = Planner { part, number, color, options, sink, refused: false, stitch: 0 };
+    let mut legs = vec![Leg::new(Direction::Forward)];
     let mut height = Height::default();
     for step in row.body.steps() {
         planner.stitch += u32::from(matches!(step, Step::Work(_)));
         match step {
             Step::Work(stitch) => planner.work(stitch, &mut legs, &mut height),
-            Step::Turn(direction) => legs.push(Leg { direction, actions: Vec::new() }),
-            Step::Hold { .. } => planner.refuse("loops set aside for another part", ""),
+            Step::Turn(direction) => legs.push(Leg::new(direction)),
+            Step::Hold { .. } if part.flat => {
+                planner
+                    .refuse("loops set aside in a flat piece", "only a tube can leave loops to another part");
+            }
+            Step::Hold { loops, by } => {
+                let direction = legs.last().map_or(Direction::Forward, |leg| leg.direction);
+                legs.push(Leg { hold: Some((loops, by)), ..Leg::new(direction) });
+            }
             // They stay open on their needles, and the next row begins with them.
             Step::Leave { .. } => {}
-            Step::Color(_) => planner.approximate("a change of color", "one color is knit throughout"),
+            Step::Color(color) => planner.color = color,
         }
         if planner.refused {
             return None;
         }
     }
+    let color = planner.color;
     let plain_rounds = if legs.len() == 1 { height.courses().saturating_sub(1) } else { 0 };
-    Some(RowPlan { legs, plain_rounds })
+    Some(RowPlan { legs, color, plain_rounds })
 }
 
 /// The common height of a row's stitches, in single crochets.
@@ -96,6 +113,7 @@ impl Height {
 struct Planner<'a, 's, 'o> {
     part: &'a Part,
     number: u32,
+    color: u16,
     options: &'a Options,
     sink: &'s mut Sink<'o>,
     refused: bool,
@@ -108,7 +126,14 @@ impl Planner<'_, '_, '_> {
         let name = stitch.kind.us_name();
         match (stitch.works, stitch.makes) {
             // A turning chain that is not counted stands only for height, which a knit loop brings itself.
-            (0, 0) if stitch.kind == Kind::Ch && leg.actions.is_empty() => return,
+            (0, 0) if stitch.kind == Kind::Ch && (leg.actions.is_empty() || self.part.flat) => return,
+            (0, makes) if stitch.kind == Kind::Ch => {
+                if leg.direction == Direction::Back {
+                    return self.refuse(name, "chains can be cast on only while the row goes forward");
+                }
+                leg.actions.push(Action { works: 0, makes, color: self.color });
+                return;
+            }
             (0, 0) => return self.approximate(name, "it makes no loop and is left out"),
             (_, 0) => {
                 return self.refuse(name, "every loop of a tube stays on its needle until it is worked");
@@ -117,7 +142,7 @@ impl Planner<'_, '_, '_> {
                 Some(last) => last.makes = last.makes.saturating_add(makes),
                 None => self.refuse(name, "it works no loop, and no stitch stands before it"),
             },
-            (works, makes) => leg.actions.push(Action { works, makes }),
+            (works, makes) => leg.actions.push(Action { works, makes, color: self.color }),
         }
         height.add(stitch.kind.height());
         let most = |loops: u16| loops <= super::MOST_IN_ONE;

@@ -4,20 +4,24 @@
 //! needle straight opposite, its *park* needle. Course order runs over the front bed from right to left, then over
 //! the back bed from left to right. At both edges the beds differ by at most one slot, so that the yarn always goes
 //! from bed to bed over one needle. One edge is anchored; room is made and taken at the other, the free one.
+//!
+//! A flat piece is the plain case of this: one bed at full gauge, slot i on f(i), and both edges free.
 
 use super::emit::Emitter;
-use crate::ir::machine::{Bed, CarrierSet, Direction, Needle};
+use crate::ir::machine::{Bed, CarrierSet, Direction, Machine, Needle};
 use std::collections::VecDeque;
 
 /// A needle with its loops, or a ghost: a needle kept free for the second loop of an increase.
 pub(super) type ItemId = u32;
 
 #[derive(Clone, Copy, Debug)]
-struct Item {
-    bed: Bed,
-    slot: i32,
-    loops: u32,
-    ghost: bool,
+pub(super) struct Item {
+    pub(super) bed: Bed,
+    pub(super) slot: i32,
+    pub(super) loops: u32,
+    pub(super) ghost: bool,
+    /// The turn whose wrap hangs here too.
+    pub(super) wrap: Option<u32>,
 }
 
 /// Why a tube cannot go on.
@@ -25,45 +29,69 @@ struct Item {
 pub(super) enum Stuck {
     /// A bed has run out of loops.
     Narrow,
-    /// A needle would hold this many loops.
-    Stack(u32),
+    /// A needle would hold this many loops; the wrap of this turn is among them.
+    Stack(u32, Option<u32>),
     /// The pattern works loops that are not there.
     Underflow,
 }
 
+/// What a machine lets a piece do.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    /// Most loops on a needle.
+    stack: u32,
+    /// Slots that loops are moved by at once.
+    pub(super) stride: i32,
+}
+
+impl Bounds {
+    pub(super) fn of(machine: &Machine) -> Self {
+        // Simulators warn when a needle reaches the limit, so one loop less is planned with, though never less than 3,
+        // which is a double decrease.
+        let stack = match machine.limits.loops_per_needle {
+            0 => 0,
+            limit => limit.saturating_sub(1).max(limit.min(3)),
+        };
+        // Neighbors of a shifted loop stand up to 2 needles away before, and a slot is 2 needles.
+        let stretch = match machine.limits.link_stretch {
+            0 => i32::MAX,
+            limit => (limit.min(1000) as i32 - 2) / 4,
+        };
+        let rack = (machine.rack.preferred.min(machine.rack.max).min(1000.0) / 2.0) as i32;
+        Self { stack: if stack == 0 { u32::MAX } else { stack }, stride: rack.min(stretch).max(1) }
+    }
+}
+
 #[derive(Debug)]
 pub(super) struct Tube {
-    items: Vec<Item>,
-    front: VecDeque<ItemId>,
-    back: VecDeque<ItemId>,
-    front_left: i32,
-    back_left: i32,
-    /// Open loops in working order: the next one in front, the newest at the back.
-    pub(super) open: VecDeque<ItemId>,
+    pub(super) items: Vec<Item>,
+    pub(super) front: VecDeque<ItemId>,
+    pub(super) back: VecDeque<ItemId>,
+    pub(super) front_left: i32,
+    pub(super) back_left: i32,
+    /// Open loops that the hook has before it, the next one in front.
+    pub(super) ahead: VecDeque<ItemId>,
+    /// Loops of the current row, the newest at the back.
+    pub(super) behind: VecDeque<ItemId>,
+    /// Of a flat piece: loops that rows left on the side from which the current row goes away, the nearest in front.
+    pub(super) rest: VecDeque<ItemId>,
     /// -1 when the left edge is free, 1 when the right one is.
-    outward: i32,
-    /// Most loops that a needle may hold.
-    limit: u32,
+    pub(super) outward: i32,
+    /// Of a flat piece: direction of the current row.
+    pub(super) heading: Option<Direction>,
+    pub(super) bounds: Bounds,
     carriers: CarrierSet,
 }
 
 impl Tube {
     /// Lays out a tube, its loops to be cast on in course order. Yarn from the right begins at the right of the front
     /// bed, yarn from the left at the left of the back bed, and the edge where it begins is the anchor.
-    pub(super) fn new(loops: u32, from_right: bool, limit: u32, carriers: CarrierSet) -> Self {
+    pub(super) fn new(loops: u32, from_right: bool, bounds: Bounds, carriers: CarrierSet) -> Self {
         let (larger, smaller) = (loops.div_ceil(2) as i32, (loops / 2) as i32);
         let (front, back) = if from_right { (larger, smaller) } else { (smaller, larger) };
-        let mut tube = Self {
-            items: Vec::with_capacity(loops as usize),
-            front: VecDeque::new(),
-            back: VecDeque::new(),
-            front_left: if from_right { -front } else { 0 },
-            back_left: if from_right { -back } else { 0 },
-            open: VecDeque::new(),
-            outward: if from_right { -1 } else { 1 },
-            limit: if limit == 0 { u32::MAX } else { limit },
-            carriers,
-        };
+        let mut tube = Self::empty(bounds, carriers, if from_right { -1 } else { 1 });
+        tube.front_left = if from_right { -front } else { 0 };
+        tube.back_left = if from_right { -back } else { 0 };
         for slot in tube.front_left..tube.front_left + front {
             let id = tube.add(Bed::Front, slot, false);
             tube.front.push_back(id);
@@ -73,7 +101,7 @@ impl Tube {
             tube.back.push_back(id);
         }
         let (right_to_left, left_to_right) = (tube.front.iter().rev(), tube.back.iter());
-        tube.open = if from_right {
+        tube.ahead = if from_right {
             right_to_left.chain(left_to_right).copied().collect()
         } else {
             left_to_right.chain(right_to_left).copied().collect()
@@ -81,30 +109,79 @@ impl Tube {
         tube
     }
 
-    fn add(&mut self, bed: Bed, slot: i32, ghost: bool) -> ItemId {
-        self.items.push(Item { bed, slot, loops: u32::from(!ghost), ghost });
+    /// Lays out a flat piece on the front bed, to be cast on from the side of the yarn.
+    pub(super) fn sheet(loops: u32, from_right: bool, bounds: Bounds, carriers: CarrierSet) -> Self {
+        let mut sheet = Self::empty(bounds, carriers, if from_right { -1 } else { 1 });
+        for slot in 0..loops as i32 {
+            let id = sheet.add(Bed::Front, slot, false);
+            sheet.front.push_back(id);
+        }
+        sheet.heading = Some(if from_right { Direction::Minus } else { Direction::Plus });
+        let order = sheet.front.iter().copied();
+        sheet.ahead = if from_right { order.rev().collect() } else { order.collect() };
+        sheet
+    }
+
+    pub(super) fn empty(bounds: Bounds, carriers: CarrierSet, outward: i32) -> Self {
+        Self {
+            items: Vec::new(),
+            front: VecDeque::new(),
+            back: VecDeque::new(),
+            front_left: 0,
+            back_left: 0,
+            ahead: VecDeque::new(),
+            behind: VecDeque::new(),
+            rest: VecDeque::new(),
+            outward,
+            heading: None,
+            bounds,
+            carriers,
+        }
+    }
+
+    /// Ends a row: what it made is what the next one works. A flat piece turns.
+    pub(super) fn end_row(&mut self) {
+        match self.heading {
+            None => self.ahead.append(&mut self.behind),
+            Some(heading) => {
+                self.heading = Some(heading.reverse());
+                let left = std::mem::take(&mut self.ahead);
+                self.ahead = self.behind.drain(..).rev().collect();
+                self.ahead.append(&mut self.rest);
+                self.rest = left;
+            }
+        }
+    }
+
+    /// Loops that hang open.
+    pub(super) fn open_loops(&self) -> usize {
+        self.ahead.len() + self.behind.len() + self.rest.len()
+    }
+
+    pub(super) fn add(&mut self, bed: Bed, slot: i32, ghost: bool) -> ItemId {
+        self.items.push(Item { bed, slot, loops: u32::from(!ghost), ghost, wrap: None });
         (self.items.len() - 1) as ItemId
     }
 
-    fn item(&self, id: ItemId) -> Item {
-        let missing = Item { bed: Bed::Front, slot: 0, loops: 0, ghost: true };
+    pub(super) fn item(&self, id: ItemId) -> Item {
+        let missing = Item { bed: Bed::Front, slot: 0, loops: 0, ghost: true, wrap: None };
         self.items.get(id as usize).copied().unwrap_or(missing)
     }
 
-    fn change(&mut self, id: ItemId, change: impl FnOnce(&mut Item)) {
+    pub(super) fn change(&mut self, id: ItemId, change: impl FnOnce(&mut Item)) {
         if let Some(item) = self.items.get_mut(id as usize) {
             change(item);
         }
     }
 
-    fn row(&self, bed: Bed) -> (&VecDeque<ItemId>, i32) {
+    pub(super) fn row(&self, bed: Bed) -> (&VecDeque<ItemId>, i32) {
         match bed {
             Bed::Front => (&self.front, self.front_left),
             Bed::Back => (&self.back, self.back_left),
         }
     }
 
-    fn row_mut(&mut self, bed: Bed) -> (&mut VecDeque<ItemId>, &mut i32) {
+    pub(super) fn row_mut(&mut self, bed: Bed) -> (&mut VecDeque<ItemId>, &mut i32) {
         match bed {
             Bed::Front => (&mut self.front, &mut self.front_left),
             Bed::Back => (&mut self.back, &mut self.back_left),
@@ -112,14 +189,23 @@ impl Tube {
     }
 
     /// First and last slot of a bed.
-    fn edges(&self, bed: Bed) -> (i32, i32) {
+    pub(super) fn edges(&self, bed: Bed) -> (i32, i32) {
         let (row, left) = self.row(bed);
         (left, left + row.len() as i32 - 1)
     }
 
     pub(super) fn needle(&self, id: ItemId) -> Needle {
         let item = self.item(id);
-        place(item.bed, item.slot)
+        self.place(item.bed, item.slot)
+    }
+
+    /// The needle of a slot.
+    fn place(&self, bed: Bed, slot: i32) -> Needle {
+        match (self.heading, bed) {
+            (Some(_), _) => Needle::on(bed, slot),
+            (None, Bed::Front) => Needle::front(2 * slot),
+            (None, Bed::Back) => Needle::back(2 * slot - 1),
+        }
     }
 
     pub(super) fn bed(&self, id: ItemId) -> Bed {
@@ -128,6 +214,9 @@ impl Tube {
 
     /// Direction of the carriage on the bed of an item, for work along the course or against it.
     pub(super) fn direction(&self, id: ItemId, forward: bool) -> Direction {
+        if let Some(heading) = self.heading {
+            return if forward { heading } else { heading.reverse() };
+        }
         match (self.item(id).bed, forward) {
             (Bed::Front, true) | (Bed::Back, false) => Direction::Minus,
             (Bed::Back, true) | (Bed::Front, false) => Direction::Plus,
@@ -145,27 +234,38 @@ impl Tube {
         self.change(id, |item| {
             item.loops = 1;
             item.ghost = false;
+            item.wrap = None;
         });
     }
 
-    /// Lays the yarn over an item without knitting it.
-    pub(super) fn wrap(&mut self, id: ItemId, forward: bool, emitter: &mut Emitter) -> Result<(), Stuck> {
-        emitter.tuck(self.direction(id, forward), self.needle(id), self.carriers);
-        self.grow(id, 1)
+    /// Lays the yarn over an item without knitting it, which is the wrap of a turn.
+    pub(super) fn wrap(
+        &mut self,
+        id: ItemId,
+        direction: Direction,
+        turn: Option<u32>,
+        emitter: &mut Emitter,
+    ) -> Result<(), Stuck> {
+        emitter.tuck(direction, self.needle(id), self.carriers);
+        self.grow(id, 1, turn)
     }
 
-    fn grow(&mut self, id: ItemId, by: u32) -> Result<(), Stuck> {
+    fn grow(&mut self, id: ItemId, by: u32, wrap: Option<u32>) -> Result<(), Stuck> {
         let loops = self.item(id).loops + by;
-        self.change(id, |item| item.loops = loops);
-        if loops > self.limit { Err(Stuck::Stack(loops)) } else { Ok(()) }
+        let wrap = wrap.or(self.item(id).wrap);
+        self.change(id, |item| {
+            item.loops = loops;
+            item.wrap = wrap;
+        });
+        if loops > self.bounds.stack { Err(Stuck::Stack(loops, wrap)) } else { Ok(()) }
     }
 
     pub(super) fn set_carriers(&mut self, carriers: CarrierSet) {
         self.carriers = carriers;
     }
 
-    /// Moves the loops of the slots `from..=to` by one slot: over to their park needles, rack, and back.
-    fn shift(&mut self, bed: Bed, from: i32, to: i32, by: i32, emitter: &mut Emitter) {
+    /// Moves the loops of the slots `from..=to` by some slots: over to their park needles, rack, and back.
+    pub(super) fn shift(&mut self, bed: Bed, from: i32, to: i32, by: i32, emitter: &mut Emitter) {
         let (row, left) = self.row(bed);
         let slice: Vec<ItemId> = row
             .iter()
@@ -184,12 +284,12 @@ impl Tube {
                 if item.ghost {
                     continue;
                 }
-                let needle = place(item.bed, item.slot);
+                let needle = self.place(item.bed, item.slot);
                 let park = Needle::on(item.bed.other(), needle.index);
                 if pass == 0 {
                     emitter.xfer(needle, park);
                 } else {
-                    emitter.xfer(park, place(item.bed, item.slot + by));
+                    emitter.xfer(park, self.place(item.bed, item.slot + by));
                 }
             }
         }
@@ -202,8 +302,9 @@ impl Tube {
     pub(super) fn open(&mut self, id: ItemId, emitter: &mut Emitter) -> Result<ItemId, Stuck> {
         let Item { bed, slot, .. } = self.item(id);
         let (left, right) = self.edges(bed);
-        let along = if bed == Bed::Front { -1 } else { 1 };
+        let along = if self.direction(id, true) == Direction::Minus { -1 } else { 1 };
         let index = (slot - left) as usize;
+        self.nearer_edge(slot, left, right);
         // On the bed that runs away from the anchor the item stays and the ones beyond it move; on the other it moves.
         let stays = along == self.outward;
         let (from, to) = match (self.outward, stays) {
@@ -227,6 +328,13 @@ impl Tube {
         }
         self.roll(emitter)?;
         Ok(ghost)
+    }
+
+    /// Both edges of a flat piece are free, and fewer loops move at the nearer one.
+    fn nearer_edge(&mut self, slot: i32, left: i32, right: i32) {
+        if self.heading.is_some() {
+            self.outward = if slot - left < right - slot { -1 } else { 1 };
+        }
     }
 
     /// Puts two neighbors in course order on one needle, which is the one that stays.
@@ -255,10 +363,11 @@ impl Tube {
         if (a.slot - b.slot).abs() != 1 {
             return Err(Stuck::Underflow);
         }
+        let (left, right) = self.edges(bed);
+        self.nearer_edge(a.slot, left, right);
         let first_outer = (a.slot - b.slot) * self.outward > 0;
         let (outer, inner) = if first_outer { (first, second) } else { (second, first) };
         let slot = self.item(outer).slot;
-        let (left, right) = self.edges(bed);
         let (from, to) = if self.outward < 0 { (left, slot) } else { (slot, right) };
         self.shift(bed, from, to, -self.outward, emitter);
         let outward = self.outward;
@@ -267,7 +376,7 @@ impl Tube {
         if outward < 0 {
             *row_left += 1;
         }
-        self.grow(inner, self.item(outer).loops)?;
+        self.grow(inner, self.item(outer).loops, self.item(outer).wrap)?;
         self.roll(emitter)?;
         Ok(inner)
     }
@@ -306,13 +415,16 @@ impl Tube {
         } else {
             row.pop_back();
         }
-        self.grow(stays, self.item(moved).loops)?;
+        self.grow(stays, self.item(moved).loops, self.item(moved).wrap)?;
         self.roll(emitter)?;
         Ok(stays)
     }
 
     /// Brings the free edge back to where the beds differ by at most one slot.
-    fn roll(&mut self, emitter: &mut Emitter) -> Result<(), Stuck> {
+    pub(super) fn roll(&mut self, emitter: &mut Emitter) -> Result<(), Stuck> {
+        if self.heading.is_some() {
+            return Ok(());
+        }
         loop {
             let ((front_left, front_right), (back_left, back_right)) =
                 (self.edges(Bed::Front), self.edges(Bed::Back));
@@ -337,7 +449,7 @@ impl Tube {
                 row.pop_back()
             };
             let Some(id) = id else { return Err(Stuck::Narrow) };
-            let target = place(from.other(), slot);
+            let target = self.place(from.other(), slot);
             if !self.item(id).ghost {
                 emitter.xfer(self.needle(id), target);
             }
@@ -370,7 +482,7 @@ impl Tube {
     /// Takes an item's loops over to another needle's.
     pub(super) fn gather(&mut self, from: ItemId, onto: ItemId, emitter: &mut Emitter) -> Result<(), Stuck> {
         emitter.xfer(self.needle(from), self.needle(onto));
-        self.grow(onto, self.item(from).loops)
+        self.grow(onto, self.item(from).loops, self.item(from).wrap)
     }
 
     /// Moves the one loop of a bound-off needle onto a neighbor.
@@ -383,14 +495,6 @@ impl Tube {
         } else {
             emitter.xfer(start, end);
         }
-        self.grow(onto, 1)
-    }
-}
-
-/// The needle of a slot.
-fn place(bed: Bed, slot: i32) -> Needle {
-    match bed {
-        Bed::Front => Needle::front(2 * slot),
-        Bed::Back => Needle::back(2 * slot - 1),
+        self.grow(onto, 1, None)
     }
 }

@@ -1,21 +1,21 @@
 //! Translation validation: the loops that a machine program makes are the loops of the pattern.
 //!
-//! The program is executed and its history read back, with no help from the lowering: the loops of the piece's yarn in
+//! The program is executed and its history read back, with no help from the lowering: the loops of the pieces' yarns in
 //! the order of making, and for each the loops it was pulled through. The pattern is worked loop by loop beside it.
-//! Both must give the same stitches in the same order, through the same loops; at the end of every row the open loops
-//! must hang around the beds in the pattern's order; and at the end of the part every loop must be secured.
+//! Both must give the same stitches in the same order, of the same colors, through the same loops; at the end of every
+//! row the open loops must hang around the beds in the pattern's order; and in the end every loop must be secured.
 
-use super::plan::{self, Leg};
-use super::{Options, joined};
+use super::Options;
+use super::begin::{self, Begin, Source};
+use super::plan::{self, Action, Leg};
+use super::replay::Replay;
 use crate::diag::{Code as Finding, Diagnostic, Sink};
-use crate::ir::machine::{
-    Bed, CarrierId, Code, Instruction, LoopId, Machine, Made, NONE, Needle, Needles, execute,
-};
-use crate::ir::{Direction, Part, Program};
+use crate::ir::machine::{CarrierId, Code, Instruction, LoopId, Machine, Made, NONE, Needles, execute};
+use crate::ir::{Direction, Part, PartId, Program};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-/// Compares a program with the pattern it was made from. True when they agree; else the sink has the first difference
-/// of each part. The program is taken to be free of violations.
+/// Compares a program with the pattern it was made from. True when they agree; else the sink has the first difference.
+/// The program is taken to be free of violations.
 pub fn validate(
     program: &Program,
     code: &Code,
@@ -24,171 +24,366 @@ pub fn validate(
     sink: &mut Sink<'_>,
 ) -> bool {
     let run = execute(code, machine, &mut Sink::new());
-    let mut segments = segments(code, &run.needles, machine);
-    let parts = &program.pattern.parts;
-    if segments.len() != parts.len() {
-        let message =
-            format!("the program knits {} pieces, the pattern has {} parts", segments.len(), parts.len());
-        sink.push(Diagnostic::new(Finding::NotTheSame, message));
-        return false;
-    }
-    let mut replay = Replay { code, needles: &run.needles, at: 0, held: BTreeMap::new(), next: 0 };
-    let mut same = true;
-    for (part, loops) in parts.iter().zip(&mut segments) {
-        if let Err(difference) = compare(part, loops, &mut replay, options) {
-            let Difference { round, stitch, message, op } = difference;
-            let at = if stitch > 0 { format!(" at stitch {stitch}") } else { String::new() };
+    let needles = &run.needles;
+    let (stitches, fresh) = stitches(code, needles, machine);
+    let sources = Sources::new(needles, &stitches);
+    let mut walk = Walk {
+        program,
+        options,
+        needles,
+        stitches: &stitches,
+        fresh: &fresh,
+        next: 0,
+        sources,
+        replay: Replay::new(code, needles),
+        all: BTreeSet::new(),
+        ends: BTreeMap::new(),
+        held: BTreeMap::new(),
+        colors: BTreeMap::new(),
+        open: Open::default(),
+        round: 0,
+        stitch: 0,
+    };
+    for piece in begin::order(&program.pattern).into_iter().flatten() {
+        let Some(part) = program.pattern.parts.get(piece.part as usize) else { continue };
+        if let Err(difference) = walk.piece(part, piece) {
+            let Difference { message, op } = difference;
+            let at = if walk.stitch > 0 { format!(" at stitch {}", walk.stitch) } else { String::new() };
             let mut diagnostic = Diagnostic::new(Finding::NotTheSame, format!("{message}{at}"))
-                .in_round(&part.name, Some(round));
+                .in_round(&part.name, Some(walk.round));
             if let Some(op) = op {
-                diagnostic = diagnostic.at(code.span(op), "here");
+                diagnostic = diagnostic.at(code.span(op as usize), "here");
             }
             sink.push(diagnostic);
-            same = false;
+            return false;
         }
     }
-    same
+    let more = walk.more();
+    let loose = walk.all.iter().find(|&&id| needles.get(id).is_none_or(|found| found.into == NONE));
+    let (message, op) = match loose {
+        Some(&id) => (
+            "a loop of the pattern is not secured at the end",
+            needles.get(id).map(|found| found.op as usize),
+        ),
+        None if more => ("the program knits more pieces than the pattern has", None),
+        None => return true,
+    };
+    let span = op.map(|op| code.span(op)).unwrap_or_default();
+    sink.push(Diagnostic::new(Finding::NotTheSame, message).at(span, ""));
+    false
 }
 
 struct Difference {
-    round: u32,
-    stitch: u32,
     message: String,
-    op: Option<usize>,
+    op: Option<u32>,
 }
 
-/// The loops of each piece: what one yarn makes from coming in to going out. Waste yarn and draw thread do not count.
-fn segments(code: &Code, needles: &Needles, machine: Option<&Machine>) -> Vec<Vec<LoopId>> {
-    let mut brought: Vec<(u32, CarrierId)> = Vec::new();
+/// The loops of the pieces in the order of making, without wraps, and those of them with which a yarn begins. Waste yarn
+/// and draw thread do not count.
+fn stitches(code: &Code, needles: &Needles, machine: Option<&Machine>) -> (Vec<LoopId>, BTreeSet<LoopId>) {
+    let waste = machine.and_then(|machine| machine.waste.as_ref());
+    let is_piece = |id: CarrierId| {
+        waste.is_none_or(|waste| code.carrier(id) != waste.carrier && code.carrier(id) != waste.draw)
+    };
+    let mut brought = Vec::new();
     for (op, instruction) in code.ops().iter().enumerate() {
         if let Instruction::In(set) | Instruction::InHook(set) = instruction {
             brought.extend(set.iter().map(|&id| (op as u32, id)));
         }
     }
-    let is_piece = |id: CarrierId| {
-        let waste = machine.and_then(|machine| machine.waste.as_ref());
-        waste.is_none_or(|waste| code.carrier(id) != waste.carrier && code.carrier(id) != waste.draw)
-    };
-    brought.retain(|&(_, id)| is_piece(id));
-    let mut segments: Vec<Vec<LoopId>> = vec![Vec::new(); brought.len()];
-    // For each carrier the piece that it is knitting, as loops come in the order of their instructions.
-    let mut current: BTreeMap<CarrierId, usize> = BTreeMap::new();
-    let mut next = 0;
+    let (mut stitches, mut fresh) = (Vec::new(), BTreeSet::new());
+    let mut begun: BTreeSet<CarrierId> = BTreeSet::new();
+    let mut next = brought.iter().peekable();
     for (id, found) in needles.loops().iter().enumerate() {
-        while let Some(&(_, carrier)) = brought.get(next).filter(|(op, _)| *op < found.op) {
-            current.insert(carrier, next);
-            next += 1;
+        while let Some(&(_, carrier)) = next.next_if(|(op, _)| *op < found.op) {
+            begun.insert(carrier);
         }
-        if let Some(segment) = current.get(&found.carrier).and_then(|&at| segments.get_mut(at)) {
-            segment.push(id as LoopId);
+        if !is_piece(found.carrier) || found.made == Made::Wrap {
+            continue;
         }
+        if begun.remove(&found.carrier) {
+            fresh.insert(id as LoopId);
+        }
+        stitches.push(id as LoopId);
     }
-    segments.retain(|segment| !segment.is_empty());
-    segments
+    (stitches, fresh)
 }
 
-fn compare(
-    part: &Part,
-    loops: &[LoopId],
-    replay: &mut Replay<'_>,
-    options: &Options,
-) -> Result<(), Difference> {
-    let fail = |round: u32, stitch: u32, message: &str, op: Option<usize>| Difference {
-        round,
-        stitch,
-        message: message.to_owned(),
-        op,
-    };
-    if joined(part) {
-        return Err(fail(0, 0, "the part begins on loops of another part, which cannot be compared", None));
+/// The open loops of a piece, as the hook sees them.
+#[derive(Default)]
+struct Open {
+    ahead: VecDeque<LoopId>,
+    behind: VecDeque<LoopId>,
+    /// Of a flat piece: loops left on the side from which the row goes away.
+    rest: VecDeque<LoopId>,
+}
+
+struct Walk<'a> {
+    program: &'a Program,
+    options: &'a Options,
+    needles: &'a Needles,
+    stitches: &'a [LoopId],
+    fresh: &'a BTreeSet<LoopId>,
+    /// Place of the next stitch.
+    next: usize,
+    sources: Sources,
+    replay: Replay<'a>,
+    /// All loops of the pattern.
+    all: BTreeSet<LoopId>,
+    /// Loops that pieces left open, by part.
+    ends: BTreeMap<PartId, VecDeque<VecDeque<LoopId>>>,
+    /// Loops set aside, by giving and taking part.
+    held: BTreeMap<(PartId, PartId), VecDeque<VecDeque<LoopId>>>,
+    colors: BTreeMap<u16, CarrierId>,
+    open: Open,
+    round: u32,
+    stitch: u32,
+}
+
+impl Walk<'_> {
+    fn fail<T>(&self, message: &str, id: Option<LoopId>) -> Result<T, Difference> {
+        let op = id.and_then(|id| self.needles.get(id)).map(|found| found.op);
+        Err(Difference { message: message.to_owned(), op })
     }
-    let needles = replay.needles;
-    let get = |id: LoopId| needles.get(id).copied();
-    // Wraps are no stitches. The tucks of the cast-on come before all knit loops.
-    let stitches: Vec<LoopId> =
-        loops.iter().copied().filter(|&id| get(id).is_some_and(|found| found.made != Made::Wrap)).collect();
-    let cast = stitches
-        .iter()
-        .position(|&id| get(id).is_some_and(|found| found.made == Made::Knit))
-        .ok_or_else(|| fail(0, 0, "nothing is knit", None))?;
-    let mut rest = stitches.get(cast..).unwrap_or_default().iter().copied();
-    let (count, skipped) = plan::cast_on(part);
-    let mut open: VecDeque<LoopId> = rest.by_ref().take(count as usize).collect();
-    if open.len() < count as usize
-        || open.iter().any(|&id| get(id).is_none_or(|found| found.made != Made::Knit))
-    {
-        let message =
-            format!("the first round has {count} loops in the pattern and other ones on the needles");
-        return Err(fail(1, 0, &message, None));
+
+    fn made(&self, id: LoopId) -> Option<Made> {
+        self.needles.get(id).map(|found| found.made)
     }
-    // Loop -> the pattern loop it stands for; the loops pulled through others are asked for their sources below.
-    let sources = Sources::new(needles, &stitches, &open);
-    let mut pattern_loops: BTreeSet<LoopId> = open.iter().copied().collect();
-    for (number, row) in part.numbered_rows().skip(skipped) {
-        for number in number..number.saturating_add(row.times) {
-            let plan = plan::row(part, row, number, options, &mut Sink::new())
-                .ok_or_else(|| fail(number, 0, "the round cannot be knit", None))?;
-            let mut stitch = 0;
-            let mut last_op = None;
-            let extra = std::iter::repeat_n(None, plan.plain_rounds as usize);
-            for leg in plan.legs.iter().map(Some).chain(extra) {
-                let forward = leg.is_none_or(|leg| leg.direction == Direction::Forward);
-                let plain = || Leg { direction: Direction::Forward, actions: vec![plan::PLAIN; open.len()] };
-                let Leg { actions, .. } = leg.cloned().unwrap_or_else(plain);
-                let mut tops = Vec::new();
-                for action in &actions {
-                    stitch += 1;
-                    let mut parents: Vec<LoopId> = (0..action.works)
-                        .filter_map(|_| if forward { open.pop_front() } else { open.pop_back() })
-                        .collect();
-                    parents.sort_unstable();
-                    let made: Vec<LoopId> = rest.by_ref().take(usize::from(action.makes)).collect();
-                    let op = made.first().and_then(|&id| get(id)).map(|found| found.op as usize);
-                    if made.len() < usize::from(action.makes) {
-                        return Err(fail(number, stitch, "the program has fewer loops than the pattern", op));
-                    }
-                    let knit = |id: LoopId| get(id).is_some_and(|found| found.made == Made::Knit);
-                    let worked: Vec<LoopId> = made.iter().copied().filter(|&id| knit(id)).collect();
-                    let [worked] = worked.as_slice() else {
-                        let message = "an increase is not one knit loop and tucks beside it";
-                        return Err(fail(number, stitch, message, op));
-                    };
-                    if sources.of(*worked) != parents {
-                        let message = "the loop is not pulled through the loops that the pattern works";
-                        return Err(fail(number, stitch, message, op));
-                    }
-                    pattern_loops.extend(&made);
-                    last_op = made.last().and_then(|&id| get(id)).map(|found| found.op);
-                    tops.extend(made);
+
+    fn take(&mut self, count: usize) -> Vec<LoopId> {
+        let found: Vec<LoopId> = self.stitches.iter().skip(self.next).take(count).copied().collect();
+        self.next += found.len();
+        found
+    }
+
+    /// Passes over the loops of a bind-off; true when another yarn begins.
+    fn more(&mut self) -> bool {
+        while let Some(id) = self.stitches.get(self.next)
+            && !self.fresh.contains(id)
+        {
+            self.next += 1;
+        }
+        self.next < self.stitches.len()
+    }
+
+    fn piece(&mut self, part: &Part, piece: begin::Piece) -> Result<(), Difference> {
+        (self.round, self.stitch) = (0, 0);
+        self.open = Open::default();
+        if !self.more() {
+            return self.fail("the program knits fewer pieces than the pattern has", None);
+        }
+        let pattern = &self.program.pattern;
+        let begin = begin::begin(pattern, part, self.options, &mut Sink::new());
+        let mut skipped = 0;
+        match begin {
+            None => return self.fail("the part begins on loops that no needle holds", None),
+            Some(Begin::Fresh { loops, skipped: rows, .. }) => {
+                skipped = rows;
+                self.cast_on(part, loops)?;
+            }
+            Some(Begin::Join(sources)) => self.join(&sources, PartId(piece.part))?,
+        }
+        let mut color = begin::first_color(part);
+        for (number, row) in part.numbered_rows().skip(skipped) {
+            for number in number..number.saturating_add(row.times) {
+                (self.round, self.stitch) = (number, 0);
+                let Some(plan) = plan::row(part, row, number, color, self.options, &mut Sink::new()) else {
+                    return self.fail("the round cannot be knit", None);
+                };
+                color = plan.color;
+                self.row(part, PartId(piece.part), &plan.legs)?;
+                for _ in 0..plan.plain_rounds {
+                    let plain = Leg::plain(self.open.ahead.len(), color);
+                    self.row(part, PartId(piece.part), &[plain])?;
                 }
+            }
+        }
+        self.stitch = 0;
+        if piece.kept {
+            let open = std::mem::take(&mut self.open.ahead);
+            self.ends.entry(PartId(piece.part)).or_default().push_back(open);
+        }
+        Ok(())
+    }
+
+    /// Tucks in the air, and the first course through them.
+    fn cast_on(&mut self, part: &Part, loops: u32) -> Result<(), Difference> {
+        self.round = 1;
+        while let Some(&id) = self.stitches.get(self.next)
+            && self.made(id) != Some(Made::Knit)
+        {
+            self.next += 1;
+        }
+        let first = self.take(loops as usize);
+        if first.len() < loops as usize || first.iter().any(|&id| self.made(id) != Some(Made::Knit)) {
+            let message =
+                format!("the first round has {loops} loops in the pattern and other ones on the needles");
+            return self.fail(&message, first.first().copied());
+        }
+        self.all.extend(&first);
+        self.open.ahead = if part.flat { first.into_iter().rev().collect() } else { first.into() };
+        Ok(())
+    }
+
+    /// Loops that other pieces left, and new ones, which are found by where they hang.
+    fn join(&mut self, sources: &[Source], to: PartId) -> Result<(), Difference> {
+        let mut begin: Vec<Option<LoopId>> = Vec::new();
+        for (at, source) in sources.iter().enumerate() {
+            let more = begin::more_of(sources, at);
+            let last = |waiting: &mut VecDeque<VecDeque<LoopId>>| {
+                waiting.remove(waiting.len().checked_sub(more + 1)?)
+            };
+            let loops = match *source {
+                Source::Open(from) => self.ends.get_mut(&from).and_then(last),
+                Source::Held(from, _) => self.held.get_mut(&(from, to)).and_then(last),
+                Source::Chain(loops) => {
+                    begin.extend(std::iter::repeat_n(None, loops as usize));
+                    continue;
+                }
+            };
+            let Some(loops) = loops else { return self.fail("no loops wait for the part", None) };
+            if let Source::Held(_, count) = *source
+                && loops.len() != count as usize
+            {
+                return self.fail("other loops wait for the part", None);
+            }
+            begin.extend(loops.into_iter().map(Some));
+        }
+        let new = begin.iter().filter(|place| place.is_none()).count();
+        if new == 0 {
+            self.open.ahead = begin.into_iter().flatten().collect();
+            return Ok(());
+        }
+        let chains = self.take(new);
+        if chains.len() < new || chains.iter().any(|&id| self.made(id) != Some(Made::Tuck)) {
+            return self.fail("the chains of the start are not cast on", chains.first().copied());
+        }
+        let set: BTreeSet<LoopId> = begin.iter().flatten().chain(&chains).copied().collect();
+        let op = chains.last().and_then(|&id| self.needles.get(id)).map_or(0, |found| found.op);
+        let mut around = self.replay.around(op, &set);
+        let known = begin.iter().position(Option::is_some);
+        let turned = known.and_then(|at| {
+            let id = *begin.get(at)?;
+            let found = around.iter().position(|other| Some(*other) == id)?;
+            Some((found + around.len() - at) % around.len())
+        });
+        around.rotate_left(turned.unwrap_or(0));
+        let fits =
+            |(place, id): (&Option<LoopId>, &LoopId)| place.map_or(chains.contains(id), |known| known == *id);
+        if around.len() != begin.len() || !begin.iter().zip(&around).all(fits) {
+            return self.fail(
+                "the loops of the start do not hang in the order of the pattern",
+                chains.last().copied(),
+            );
+        }
+        self.all.extend(&chains);
+        self.open.ahead = around.into();
+        Ok(())
+    }
+
+    fn row(&mut self, part: &Part, id: PartId, legs: &[Leg]) -> Result<(), Difference> {
+        let mut last = None;
+        for leg in legs {
+            if let Some((loops, by)) = leg.hold {
+                let loops = (loops as usize).min(self.open.ahead.len());
+                let aside = self.open.ahead.drain(..loops).collect();
+                self.held.entry((id, by)).or_default().push_back(aside);
+            }
+            let forward = leg.direction == Direction::Forward;
+            for &action in &leg.actions {
+                self.stitch += 1;
+                let tops = self.action(action, forward)?;
+                last = tops.last().copied().or(last);
                 if forward {
-                    open.extend(tops);
+                    self.open.behind.extend(tops);
                 } else {
                     for top in tops {
-                        open.push_front(top);
+                        self.open.ahead.push_front(top);
                     }
                 }
             }
-            if let Some(op) = last_op
-                && !replay.hangs_as(&open, op)
-            {
-                let message = "the loops do not hang in the order of the pattern";
-                return Err(fail(number, 0, message, Some(op as usize)));
+        }
+        self.stitch = 0;
+        if let Some(last) = last
+            && !self.hang_in_order(part, last)
+        {
+            return self.fail("the loops do not hang in the order of the pattern", Some(last));
+        }
+        let open = &mut self.open;
+        if part.flat {
+            let left = std::mem::take(&mut open.ahead);
+            open.ahead = open.behind.drain(..).rev().collect();
+            open.ahead.append(&mut open.rest);
+            open.rest = left;
+        } else {
+            open.ahead.append(&mut open.behind);
+        }
+        Ok(())
+    }
+
+    /// One stitch: its loops, which must be pulled through those that the pattern works.
+    fn action(&mut self, action: Action, forward: bool) -> Result<Vec<LoopId>, Difference> {
+        let open = &mut self.open;
+        let mut parents: Vec<LoopId> = (0..action.works)
+            .filter_map(|_| if forward { open.ahead.pop_front() } else { open.behind.pop_back() })
+            .collect();
+        parents.sort_unstable();
+        let made = self.take(usize::from(action.makes));
+        let first = made.first().copied();
+        if made.len() < usize::from(action.makes) {
+            return self.fail("the program has fewer loops than the pattern", first);
+        }
+        let worked: Vec<LoopId> =
+            made.iter().copied().filter(|&id| self.made(id) == Some(Made::Knit)).collect();
+        match (action.works, worked.as_slice()) {
+            (0, []) => {}
+            (1.., &[worked]) => {
+                if self.sources.of(worked) != parents {
+                    let message = "the loop is not pulled through the loops that the pattern works";
+                    return self.fail(message, first);
+                }
+            }
+            _ => return self.fail("an increase is not one knit loop and tucks beside it", first),
+        }
+        if self.program.colors.len() > 1 {
+            self.colored(action.color, &made)?;
+        }
+        self.all.extend(&made);
+        Ok(made)
+    }
+
+    /// Each color has a carrier of its own.
+    fn colored(&mut self, color: u16, made: &[LoopId]) -> Result<(), Difference> {
+        for &id in made {
+            let Some(carrier) = self.needles.get(id).map(|found| found.carrier) else { continue };
+            let known = *self.colors.entry(color).or_insert(carrier);
+            let other = self.colors.iter().any(|(of, used)| *of != color && *used == carrier);
+            if known != carrier || other {
+                return self.fail("the loop is of another color", Some(id));
             }
         }
+        Ok(())
     }
-    secured(&pattern_loops, stitches.last().copied(), needles).map_err(|id| {
-        let op = get(id).map(|found| found.op as usize);
-        fail(0, 0, "a loop of the pattern is not secured at the end", op)
-    })
-}
 
-/// Every loop but the last of the yarn has a loop pulled through it.
-fn secured(loops: &BTreeSet<LoopId>, last: Option<LoopId>, needles: &Needles) -> Result<(), LoopId> {
-    let loose = |id: LoopId| needles.get(id).is_none_or(|found| found.into == NONE);
-    match loops.iter().copied().find(|&id| loose(id) && Some(id) != last) {
-        Some(id) => Err(id),
-        None => Ok(()),
+    /// True when, after the last loop of a row, the open loops hang in the order of the pattern.
+    fn hang_in_order(&mut self, part: &Part, last: LoopId) -> bool {
+        let Open { ahead, behind, rest } = &self.open;
+        let expected: Vec<LoopId> = if part.flat {
+            rest.iter().rev().chain(behind).chain(ahead).copied().collect()
+        } else {
+            ahead.iter().chain(behind).copied().collect()
+        };
+        let set: BTreeSet<LoopId> = expected.iter().copied().collect();
+        let op = self.needles.get(last).map_or(0, |found| found.op);
+        let mut around = self.replay.around(op, &set);
+        if part.flat {
+            return around == expected || around.iter().rev().eq(expected.iter());
+        }
+        match expected.first().and_then(|first| around.iter().position(|id| id == first)) {
+            Some(start) => around.rotate_left(start),
+            None => return expected.is_empty() && around.is_empty(),
+        }
+        around == expected
     }
 }
 
@@ -199,11 +394,9 @@ struct Sources {
 }
 
 impl Sources {
-    fn new(needles: &Needles, stitches: &[LoopId], first: &VecDeque<LoopId>) -> Self {
-        let from = first.front().copied().unwrap_or(0);
+    fn new(needles: &Needles, stitches: &[LoopId]) -> Self {
         let mut into: Vec<(LoopId, LoopId)> = stitches
             .iter()
-            .filter(|&&id| id >= from)
             .filter_map(|&id| needles.get(id).map(|found| (found.into, id)))
             .filter(|&(into, _)| into != NONE)
             .collect();
@@ -214,81 +407,5 @@ impl Sources {
     fn of(&self, id: LoopId) -> Vec<LoopId> {
         let start = self.into.partition_point(|&(into, _)| into < id);
         self.into.iter().skip(start).take_while(|&&(into, _)| into == id).map(|&(_, source)| source).collect()
-    }
-}
-
-/// A second, plainer walk over the program that only keeps which loops hang where.
-struct Replay<'a> {
-    code: &'a Code,
-    needles: &'a Needles,
-    at: usize,
-    held: BTreeMap<Needle, Vec<LoopId>>,
-    next: LoopId,
-}
-
-impl Replay<'_> {
-    /// True when, after instruction `op`, the open loops hang around the beds in this order, from some point on.
-    fn hangs_as(&mut self, open: &VecDeque<LoopId>, op: u32) -> bool {
-        self.advance(op as usize);
-        let mut circle: Vec<LoopId> = Vec::with_capacity(open.len());
-        let top = |(_, stack): (&Needle, &Vec<LoopId>)| {
-            let stitch = |id: &&LoopId| self.needles.get(**id).is_some_and(|found| found.made != Made::Wrap);
-            stack.iter().rfind(stitch).copied()
-        };
-        circle.extend(self.held.iter().filter(|(needle, _)| needle.bed == Bed::Front).rev().filter_map(top));
-        circle.extend(self.held.iter().filter(|(needle, _)| needle.bed == Bed::Back).filter_map(top));
-        let Some(start) = open.front().and_then(|first| circle.iter().position(|id| id == first)) else {
-            return open.is_empty() && circle.is_empty();
-        };
-        circle.rotate_left(start);
-        circle.iter().eq(open.iter())
-    }
-
-    fn advance(&mut self, op: usize) {
-        while self.at <= op
-            && let Some(instruction) = self.code.ops().get(self.at)
-        {
-            match *instruction {
-                Instruction::Knit(_, needle, carriers) => {
-                    self.held.remove(&needle);
-                    self.form(needle, carriers.len());
-                }
-                Instruction::Tuck(_, needle, carriers) => self.form(needle, carriers.len()),
-                Instruction::Split(_, from, to, carriers) => {
-                    self.transfer(from, to);
-                    self.form(from, carriers.len());
-                }
-                Instruction::Xfer(from, to) => self.transfer(from, to),
-                Instruction::Drop(needle) => {
-                    self.held.remove(&needle);
-                }
-                Instruction::In(_)
-                | Instruction::InHook(_)
-                | Instruction::ReleaseHook(_)
-                | Instruction::Out(_)
-                | Instruction::OutHook(_)
-                | Instruction::Stitch(..)
-                | Instruction::Rack(_)
-                | Instruction::Amiss(_)
-                | Instruction::Miss(..)
-                | Instruction::Pause(_)
-                | Instruction::Extension(_) => {}
-            }
-            self.at += 1;
-        }
-    }
-
-    fn form(&mut self, needle: Needle, loops: usize) {
-        if loops > 0 {
-            let next = self.next;
-            self.held.entry(needle).or_default().extend(next..next + loops as LoopId);
-            self.next += loops as LoopId;
-        }
-    }
-
-    fn transfer(&mut self, from: Needle, to: Needle) {
-        if let Some(moved) = self.held.remove(&from) {
-            self.held.entry(to).or_default().extend(moved);
-        }
     }
 }
