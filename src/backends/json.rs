@@ -1,7 +1,7 @@
 //! The whole program as JSON, schema `picot.program/1`, for scripts.
 
 use super::crochet::words::Words;
-use super::crochet::{Arrows, Terms};
+use super::crochet::{Arrows, Language, Terms};
 use super::{Backend, Error, Format};
 use crate::diag::Sink;
 use crate::ir::verify::{PartFacts, RowFacts, Verified};
@@ -91,7 +91,7 @@ fn write_part(
     writeln!(out, "\"start\": {{\"kind\": \"{start}\", \"loops\": {}}},", facts.start)?;
     writeln!(out, "\"finish\": {{\"kind\": \"{finish}\", \"loops\": {}}},", facts.open)?;
     out.write_all(b"\"rounds\": [")?;
-    let words = Words::new(program, part, Terms::Us, Arrows::Unicode);
+    let words = Words::new(program, part, Terms::Us, Language::English, Arrows::Unicode);
     let mut first = true;
     for (row, counts) in part.rows.iter().zip(&facts.rows) {
         let body = round_body(program, row, counts, &words);
@@ -119,7 +119,7 @@ fn round_body(program: &Program, row: &Row, counts: &RowFacts, words: &Words<'_>
         "\"consumes\": {}, \"produces\": {}, \"text\": {}, \"steps\": [",
         counts.consumes,
         counts.produces,
-        quoted(&words.row(&row.body))
+        quoted(&words.row(&row.body, false))
     );
     use std::fmt::Write as _;
     let mut first = true;

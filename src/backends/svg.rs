@@ -10,7 +10,7 @@ mod symbols;
 pub(super) mod trace;
 
 use super::crochet::words::Words;
-use super::crochet::{Arrows, Terms};
+use super::crochet::{Arrows, Language, Terms};
 use super::{Backend, Error, Format};
 use crate::diag::Sink;
 use crate::ir::verify::{PartFacts, Verified};
@@ -113,12 +113,12 @@ impl Svg {
         let mut back = false;
         for (index, (part, facts)) in program.pattern.parts.iter().zip(&program.facts().parts).enumerate() {
             let trace = trace::trace(part);
-            let words = Words::new(program, part, self.terms, Arrows::Unicode);
+            let words = Words::new(program, part, self.terms, Language::English, Arrows::Unicode);
             let titles: Vec<String> = part
                 .rows
                 .iter()
                 .zip(&facts.rows)
-                .map(|(row, counts)| format!("{} ({})", words.row(&row.body), counts.produces))
+                .map(|(row, counts)| format!("{} ({})", words.row(&row.body, false), counts.produces))
                 .collect();
             let spiral = match self.chart {
                 Chart::Auto => suits_a_spiral(part, facts),

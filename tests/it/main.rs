@@ -20,6 +20,7 @@ mod programs;
 mod properties;
 mod reader;
 mod render;
+mod roundtrip;
 mod shape_files;
 mod snapshots;
 mod surfaces;

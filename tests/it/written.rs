@@ -66,6 +66,7 @@ fn rounds(text: &str) -> Vec<(u32, Vec<Step>, u32)> {
     let mut rounds = Vec::new();
     for line in text.lines().filter(|line| line.starts_with("Rnd") && !line.contains("magic ring")) {
         let (label, rest) = line.split_once(": ").expect("a label");
+        let rest = rest.strip_suffix(", close").unwrap_or(rest);
         let (body, count) = rest.rsplit_once(" (").expect("a count");
         let count = count.trim_end_matches(')').parse().expect("a number");
         let numbers = label.trim_start_matches("Rnds ").trim_start_matches("Rnd ");
@@ -336,6 +337,11 @@ fn options_are_checked() {
     let target = picot::backends::target("crochet").expect("listed");
     let set = |text: &str| target.configure(text.parse().expect("TOML")).map(|_| ());
     assert!(set("terms = 'uk'\nstyle = 'paper'\narrows = 'words'\nline-width = 60").is_ok());
-    assert!(set("term = 'uk'").is_err() && set("terms = 'fr'").is_err() && set("line-width = -1").is_err());
-    assert_eq!(target.keys(), ["terms", "style", "arrows", "line-width"]);
+    assert!(
+        set("term = 'uk'").is_err()
+            && set("terms = 'fr'").is_err()
+            && set("language = 'xx'").is_err()
+            && set("line-width = -1").is_err()
+    );
+    assert_eq!(target.keys(), ["terms", "language", "style", "arrows", "line-width"]);
 }

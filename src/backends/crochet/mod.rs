@@ -6,6 +6,8 @@ pub(super) mod words;
 
 use super::{Backend, Error, Format};
 use crate::diag::Sink;
+pub use crate::ir::{Language, Terms};
+
 use crate::ir::verify::Verified;
 use serde::Deserialize;
 use std::io;
@@ -14,8 +16,10 @@ use std::io;
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Crochet {
-    /// The vocabulary; US by default.
+    /// The English vocabulary, `us` or `uk`. The same word means different stitches: US `sc` is UK `dc`.
     pub terms: Terms,
+    /// The language: `en`, `es`, `pt`, `fr`, `de`, `no`, or `letters` for the notation X V A.
+    pub language: Language,
     /// How much is said.
     pub style: Style,
     /// How changes of direction are marked.
@@ -26,26 +30,12 @@ pub struct Crochet {
 
 impl Default for Crochet {
     fn default() -> Self {
-        Self { terms: Terms::Us, style: Style::Maker, arrows: Arrows::Unicode, line_width: 80 }
-    }
-}
-
-/// Crochet vocabulary. The same word means different stitches: US `sc` is UK `dc`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Terms {
-    /// American.
-    #[default]
-    Us,
-    /// British.
-    Uk,
-}
-
-impl Terms {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Us => "us",
-            Self::Uk => "uk",
+        Self {
+            terms: Terms::Us,
+            language: Language::English,
+            style: Style::Maker,
+            arrows: Arrows::Unicode,
+            line_width: 80,
         }
     }
 }
@@ -90,5 +80,6 @@ impl Backend for Crochet {
 impl Format for Crochet {
     const NAME: &'static str = "crochet";
     const EXTENSION: &'static str = "txt";
-    const ABOUT: &'static str = "written pattern to crochet from, in US or UK terms";
+    const ABOUT: &'static str =
+        "written pattern to crochet from; terms = us, uk; language = en, es, pt, fr, de, no, letters";
 }

@@ -1,9 +1,12 @@
 //! Parts, start lines, rounds, and what is to do between and after them.
 
 use super::words::Words;
-use super::{Arrows, Crochet, Style, Terms};
+use super::{Arrows, Crochet, Style};
+use crate::ir::dialect::fill;
 use crate::ir::verify::{PartFacts, RowFacts, Verified};
-use crate::ir::{Finish, Kind, Op, Part, PartId, Program, Row, Segment, Start, Step};
+use crate::ir::{
+    Entry, Finish, Kind, Language, Op, Part, PartId, Program, Row, Segment, Start, Step, Stitch, Terms,
+};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -50,12 +53,15 @@ impl<'t> Text<'t> {
     }
 }
 
-/// A name as the language reads it: bare when it is words, else in quotes.
-pub(super) fn name(name: &str) -> String {
-    let bare = name.chars().all(|c| c.is_alphanumeric() || c == ' ')
-        && name.starts_with(char::is_alphabetic)
-        && !name.ends_with(' ')
-        && !name.contains("  ");
+/// A name as the language reads it: bare when it is words that mean nothing else, else in quotes.
+pub(super) fn name(name: &str, language: Language) -> String {
+    let word = |(index, word): (usize, &str)| {
+        let number = index > 0 && word.bytes().all(|byte| byte.is_ascii_digit());
+        let letters =
+            word.len() > 1 && word.bytes().all(|byte| byte.is_ascii_alphabetic()) && !language.knows(word);
+        !word.is_empty() && (number || letters)
+    };
+    let bare = !name.is_empty() && name.split(' ').enumerate().all(word);
     if bare { name.to_owned() } else { format!("\"{}\"", clean(name).replace('"', "'")) }
 }
 
@@ -65,18 +71,35 @@ pub(super) fn clean(text: &str) -> String {
 }
 
 /// A color as rows name it: its own name when that is one capital letter, else the letter of its place.
-pub(super) fn color(program: &Program, color: u16) -> String {
-    match program.colors.get(usize::from(color)).map(String::as_str) {
-        Some(name) if name.len() == 1 && name.chars().all(|c| c.is_ascii_uppercase()) => name.to_owned(),
-        Some(given) => name(given),
-        None => char::from(b'A' + (color % 26) as u8).to_string(),
+pub(super) fn color(program: &Program, color: u16, language: Language) -> String {
+    let letter = char::from(b'A' + (color % 26) as u8).to_string();
+    let given = program.colors.get(usize::from(color)).map_or(letter.as_str(), String::as_str);
+    // `A` is the English article, but a capital is a color; in letters it is a decrease.
+    let free = |name: &str| language != Language::Letters && (name == "A" || !language.knows(name));
+    match given {
+        given if given.len() == 1 && given.bytes().all(|byte| byte.is_ascii_uppercase()) && free(given) => {
+            given.to_owned()
+        }
+        given if given.contains(' ') => format!("\"{}\"", clean(given).replace('"', "'")),
+        given => name(given, language),
     }
 }
 
 /// Name of a stitch that the language has no word for; the header defines it.
-pub(super) fn special(kind: Kind, works: u16, makes: u16) -> String {
-    let letter = |count: u16| char::from(b'a' + (count % 26) as u8);
-    format!("{}-{}-{}", kind.us().replace(' ', "-"), letter(works), letter(makes))
+pub(super) fn special(kind: Kind, works: u16, makes: u16, terms: Terms) -> String {
+    let letters = |count: u16| {
+        let mut text = String::new();
+        let mut rest = count;
+        loop {
+            text.insert(0, char::from(b'a' + (rest % 26) as u8));
+            rest /= 26;
+            if rest == 0 {
+                return text;
+            }
+        }
+    };
+    let base = Language::English.abbreviation(kind, terms).replace(' ', "");
+    format!("{base}-{}-{}", letters(works), letters(makes))
 }
 
 /// Writes a part.
@@ -90,12 +113,18 @@ pub(super) fn part(
     else {
         return Ok(());
     };
-    let words = Words::new(program, part, options.terms, options.arrows);
+    let words = Words::new(program, part, options.terms, options.language, options.arrows);
     text.gap()?;
     if program.pattern.parts.len() > 1 || part.copies > 1 || matches!(part.start, Start::Join { .. }) {
-        text.line(&head(program, part))?;
+        text.line(&head(program, part, options.language))?;
     }
     start(part, &words, text)?;
+    let (forms, prose) = (options.language.vocabulary().forms, options.language.vocabulary().prose);
+    let rows = part.rows.len();
+    let end = |place: usize| {
+        let last = place + 1 == rows && part.finish == Finish::DrawnShut;
+        if last { format!(", {}", forms.close) } else { String::new() }
+    };
     let stuff = stuffing(part, facts);
     let mut explained = false;
     for (place, ((number, row), counts)) in part.numbered_rows().zip(&facts.rows).enumerate() {
@@ -103,39 +132,44 @@ pub(super) fn part(
             explain_short_rows(options, text)?;
         }
         if stuff == Some(place) {
-            text.prose(
-                "Stuff firmly now, before the opening gets small, and a little more as you close it.",
-            )?;
+            text.prose(prose.stuff)?;
         }
+        let begins = place == 0 && matches!(part.start, Start::Ring { loops: 0 });
+        let (made, end) = (counts.produces, end(place));
         if options.style == Style::Paper {
-            let body = words.plain_row(&row.body);
+            let body = words.plain_row(&row.body, begins);
             for round in 0..row.times {
-                let label = label(part, number.saturating_add(round), 1);
-                text.line(&format!("{label}: {body} ({})", counts.produces))?;
+                let label = label(part, number.saturating_add(round), 1, options.language);
+                let end = if round + 1 == row.times { end.as_str() } else { "" };
+                text.line(&format!("{label}: {body} ({made}){end}"))?;
             }
         } else {
-            let body = words.row(&row.body);
-            text.line(&format!("{}: {body} ({})", label(part, number, row.times), counts.produces))?;
+            let body = words.row(&row.body, begins);
+            let label = label(part, number, row.times, options.language);
+            text.line(&format!("{label}: {body} ({made}){end}"))?;
         }
     }
     finish(part, facts, &words, text)
 }
 
 /// `Rnd 7` or `Rnds 7-12`, `Row 7` in flat work.
-fn label(part: &Part, number: u32, times: u32) -> String {
-    let kind = if part.flat { "Row" } else { "Rnd" };
+fn label(part: &Part, number: u32, times: u32, language: Language) -> String {
+    let forms = language.vocabulary().forms;
+    let [one, several] = if part.flat { forms.row } else { forms.rnd };
+    let space = if forms.glued && !part.flat { "" } else { " " };
     if times == 1 {
-        format!("{kind} {number}")
+        format!("{one}{space}{number}")
     } else {
-        format!("{kind}s {number}-{}", number.saturating_add(times - 1))
+        format!("{several}{space}{number}-{}", number.saturating_add(times - 1))
     }
 }
 
 /// The line that opens a part.
-fn head(program: &Program, part: &Part) -> String {
-    let mut line = name(&part.name);
+fn head(program: &Program, part: &Part, language: Language) -> String {
+    let forms = language.vocabulary().forms;
+    let mut line = name(&part.name, language);
     if part.copies > 1 {
-        let _ = write!(line, " (make {})", part.copies);
+        let _ = write!(line, " ({})", fill(forms.make, &[("n", &part.copies.to_string())]));
     }
     line.push(':');
     let Start::Join { segments } = &part.start else { return line };
@@ -151,23 +185,35 @@ fn head(program: &Program, part: &Part) -> String {
             .iter()
             .position(|other| std::ptr::eq(other, part))
             .map_or_else(Vec::new, |own| holds(source, PartId(own as u32)));
+        let [held_word, around] = forms.taken;
+        let surface = segments.iter().any(|segment| matches!(segment, Segment::Surface { .. }));
+        let how = if surface { around } else { held_word };
         held.reverse();
-        let mut how = "held";
         let places = segments.iter().filter_map(|segment| match segment {
             Segment::Held { .. } => held.pop(),
             Segment::Surface { round, first, loops, .. } => {
-                how = "surface";
                 Some((*round, *first, first.saturating_add(loops.saturating_sub(1))))
             }
             Segment::Open { .. } | Segment::Chain { .. } => None,
         });
+        let places: Vec<(u32, u32, u32)> = places.collect();
+        let (from, source) = (forms.origin[1], name(&source.name, language));
+        if places.iter().any(|(_, first, _)| *first == 0) {
+            // Loops of a short row are of no round below.
+            let _ = write!(line, " {from} {source} {how}");
+            return line;
+        }
+        let noun =
+            if language == Language::German { forms.rnd[0].to_owned() } else { forms.rnd[0].to_lowercase() };
+        let [one, several] = forms.st;
         let places: Vec<String> = places
+            .into_iter()
             .map(|(round, first, last)| match last {
-                last if last == first => format!("rnd {round} st {first}"),
-                last => format!("rnd {round} sts {first}-{last}"),
+                last if last == first => format!("{noun} {round} {one} {first}"),
+                last => format!("{noun} {round} {several} {first}-{last}"),
             })
             .collect();
-        let _ = write!(line, " from {} {} {how}", name(&source.name), places.join(", "));
+        let _ = write!(line, " {from} {source} {} {how}", places.join(", "));
         return line;
     }
     // The chain between two parts is worked on both sides, so its second side is not written.
@@ -177,13 +223,18 @@ fn head(program: &Program, part: &Part) -> String {
         }
         all => all,
     };
+    // Where the second side is not worked, a chain of nothing says so.
+    let one_side = matches!(segments, [Segment::Open { .. }, Segment::Chain { .. }, Segment::Open { .. }])
+        && matches!(&part.start, Start::Join { segments } if segments.len() == 3);
+    let chain = language.abbreviation(Kind::Ch, Terms::Us);
+    let end = one_side.then(|| format!("{chain} 0"));
     let pieces = segments.iter().map(|segment| match segment {
-        Segment::Chain { loops } => format!("ch {loops}"),
+        Segment::Chain { loops } => format!("{chain} {loops}"),
         Segment::Open { part, .. } | Segment::Held { part, .. } | Segment::Surface { part, .. } => {
-            of(part).map_or_else(String::new, |part| name(&part.name))
+            of(part).map_or_else(String::new, |part| name(&part.name, language))
         }
     });
-    let _ = write!(line, " join {}", pieces.collect::<Vec<_>>().join(" + "));
+    let _ = write!(line, " {} {}", forms.origin[0], pieces.chain(end).collect::<Vec<_>>().join(" + "));
     line
 }
 
@@ -191,20 +242,23 @@ fn head(program: &Program, part: &Part) -> String {
 fn holds(part: &Part, by: PartId) -> Vec<(u32, u32, u32)> {
     let mut places = Vec::new();
     for (number, row) in part.numbered_rows() {
-        let mut worked = 0_u32;
+        // A short row over chains may give back more than the row has used up.
+        let mut worked = 0_i64;
+        let place = |worked: i64| u32::try_from(worked).unwrap_or(0);
         let mut direction = crate::ir::Direction::Forward;
         for step in row.body.steps() {
             match step {
                 Step::Work(stitch) if direction == crate::ir::Direction::Forward => {
-                    worked = worked.saturating_add(stitch.works.into());
+                    worked += i64::from(stitch.works);
                 }
-                Step::Work(stitch) => worked = worked.saturating_sub(stitch.makes.into()),
+                Step::Work(stitch) => worked -= i64::from(stitch.makes),
                 Step::Turn(new) => direction = new,
                 Step::Hold { loops, by: taker } => {
                     if taker == by {
-                        places.push((number.saturating_sub(1), worked + 1, worked.saturating_add(loops)));
+                        let (first, last) = (place(worked + 1), place(worked + i64::from(loops)));
+                        places.push((number.saturating_sub(1), first, last));
                     }
-                    worked = worked.saturating_add(loops);
+                    worked += i64::from(loops);
                 }
                 Step::Leave { .. } | Step::Color(_) => {}
             }
@@ -214,17 +268,27 @@ fn holds(part: &Part, by: PartId) -> Vec<(u32, u32, u32)> {
 }
 
 fn start(part: &Part, words: &Words<'_>, text: &mut Text<'_>) -> io::Result<()> {
+    let vocabulary = words.language.vocabulary();
+    let (forms, prose) = (vocabulary.forms, vocabulary.prose);
+    let slip = words.base(Kind::SlSt);
     match part.start {
+        // The first row says what goes into the ring.
+        Start::Ring { loops: 0 } | Start::Chain { loops: 0, joined: false } | Start::Join { .. } => Ok(()),
         Start::Ring { loops } => {
-            let sc = words.base(Kind::Sc);
-            text.line(&format!("Rnd 1: {loops} {sc} in magic ring ({loops})"))
+            let space = if forms.glued { "" } else { " " };
+            let stitch = format!("{loops}{space}{}", words.base(Kind::Sc));
+            let body = fill(forms.in_ring, &[("stitch", &stitch)]);
+            let shut = part.rows.is_empty() && part.finish == Finish::DrawnShut;
+            let end = if shut { format!(", {}", forms.close) } else { String::new() };
+            text.line(&format!("{}: {body} ({loops}){end}", label(part, 1, 1, words.language)))
         }
         Start::Chain { loops, joined: true } => {
-            text.line(&format!("Ch {loops}, join with a sl st to form a ring"))?;
-            text.prose("Take care that the chain is not twisted. The first round is worked into its chains.")
+            text.line(&fill(forms.tube, &[("n", &loops.to_string()), ("slip", slip)]))?;
+            text.prose(prose.twist)
         }
-        Start::Chain { loops, joined: false } => text.line(&format!("Ch {loops}")),
-        Start::Join { .. } => Ok(()),
+        Start::Chain { loops, joined: false } => {
+            text.line(&fill(forms.foundation, &[("n", &loops.to_string())]))
+        }
     }
 }
 
@@ -241,36 +305,28 @@ fn stuffing(part: &Part, facts: &PartFacts) -> Option<usize> {
 }
 
 fn explain_short_rows(options: &Crochet, text: &mut Text<'_>) -> io::Result<()> {
-    let (back, forward) = match options.arrows {
-        Arrows::Unicode => ("At ←", "at →"),
-        Arrows::Ascii => ("At <-", "at ->"),
-        Arrows::Words => ("At the first turn", "at the second"),
+    let prose = options.language.vocabulary().prose;
+    let [back, forward] = match options.arrows {
+        Arrows::Unicode => ["←", "→"],
+        Arrows::Ascii => ["<-", "->"],
+        Arrows::Words => return text.prose(prose.short_rows_words),
     };
-    let sign = if options.arrows == Arrows::Words { "" } else { " (the ones with a minus)" };
-    text.prose(&format!(
-        "Short rows: {back} turn the work and go back over the stitches just made{sign}; {forward} turn again \
-         and go on, over these stitches first. Turn without a chain. Each turn leaves a step of one row; on the next \
-         round, put the hook through the edge of the turned row too as you work the stitch at the step, so that no hole stays."
-    ))
+    text.prose(&fill(prose.short_rows, &[("back", back), ("forward", forward)]))
 }
 
 fn finish(part: &Part, facts: &PartFacts, words: &Words<'_>, text: &mut Text<'_>) -> io::Result<()> {
+    let vocabulary = words.language.vocabulary();
+    let prose = vocabulary.prose;
     let slip = words.base(Kind::SlSt);
     let left = facts.rows.last().map_or(0, |row| row.left);
+    let stitches = prose.stitches[usize::from(left != 1)];
     text.prose(&match part.finish {
-        Finish::DrawnShut => format!(
-            "Cut the yarn. Thread the tail through the front loops of the last {} stitches, pull tight and weave it in.",
-            facts.open
-        ),
-        Finish::Open if part.flat => "Fasten off and weave in the ends.".to_owned(),
-        Finish::Open if left > 0 => format!(
-            "The yarn ends {left} {} before the marker. Work a {slip} into each of the next 2 stitches to step down to the \
-             round below, fasten off and weave in the ends.",
-            if left == 1 { "stitch" } else { "stitches" }
-        ),
-        Finish::Open => format!(
-            "Work a {slip} into the next stitch to level the edge, fasten off and weave in the ends."
-        ),
+        Finish::DrawnShut => fill(prose.shut, &[("n", &facts.open.to_string())]),
+        Finish::Open if part.flat => prose.fasten_off.to_owned(),
+        Finish::Open if left > 0 => {
+            fill(prose.step_down, &[("n", &left.to_string()), ("st", stitches), ("slip", slip)])
+        }
+        Finish::Open => fill(prose.level, &[("slip", slip)]),
     })
 }
 
@@ -293,7 +349,13 @@ impl Uses {
         for part in &program.pattern.parts {
             let rows = part.rows.len();
             for (index, row) in part.rows.iter().enumerate() {
-                uses.block(&row.body, index + 1 == rows);
+                let mut place = Place {
+                    last: index + 1 == rows,
+                    ring: index == 0 && matches!(part.start, Start::Ring { loops: 0 }),
+                    stands: super::words::stands(&row.body),
+                    worked: false,
+                };
+                uses.block(&row.body, &mut place);
             }
             match part.start {
                 Start::Ring { .. } => uses.kind(Kind::Sc),
@@ -316,36 +378,62 @@ impl Uses {
         }
     }
 
-    fn block(&mut self, block: &crate::ir::Block, last: bool) {
+    fn block(&mut self, block: &crate::ir::Block, place: &mut Place) {
         for op in block.ops() {
             match op {
                 Op::Work { stitch, .. } => {
                     self.kind(stitch.kind);
-                    let own = (stitch.kind.works(), stitch.kind.makes());
-                    match (stitch.works, stitch.makes) {
-                        arity if arity == own => {}
-                        (1, makes) if makes > 1 => self.increase = true,
-                        (works, 1) if works > 1 => self.decrease = true,
-                        (0, 1) => {}
-                        _ if matches!(stitch.kind, Kind::Skip | Kind::Ch | Kind::SlSt) => {}
-                        (works, makes) => {
-                            let special = (stitch.kind, works, makes);
-                            if !self.special.contains(&special) {
-                                self.special.push(special);
-                            }
-                        }
-                    }
+                    self.stitch(*stitch, place);
+                    let loose =
+                        stitch.works + stitch.makes == 0 && matches!(stitch.kind, Kind::Ch | Kind::SlSt);
+                    place.worked |= !loose;
                 }
                 Op::Repeat { body, .. } => {
                     self.repeats = true;
-                    self.block(body, last);
+                    self.block(body, place);
                 }
                 Op::Turn(_) => self.short_rows = true,
-                Op::Leave { .. } => self.left |= !last,
-                Op::Hold { .. } | Op::Color(_) => {}
+                Op::Leave { .. } => self.left |= !place.last,
+                Op::Hold { .. } => place.worked = true,
+                Op::Color(_) => {}
             }
         }
     }
+
+    fn stitch(&mut self, stitch: Stitch, place: &Place) {
+        let arity = (stitch.works, stitch.makes);
+        let chain = stitch.kind == Kind::Ch;
+        let said = super::words::is_common(stitch.kind, arity)
+            || (arity == (0, 1)
+                && stitch.kind != Kind::Special
+                && (place.ring || place.worked || chain || stitch.entry == Entry::Space))
+            || (arity == (1, 1) && chain && place.stands && !place.worked)
+            || (arity == (0, 0) && stitch.kind == Kind::SlSt);
+        match arity {
+            _ if !said => {
+                let special = (stitch.kind, stitch.works, stitch.makes);
+                if !self.special.contains(&special) {
+                    self.special.push(special);
+                }
+            }
+            (1, makes) if makes > 1 => self.increase = true,
+            (works, 1) if works > 1 => self.decrease = true,
+            _ => {}
+        }
+    }
+}
+
+/// Where in its row a stitch stands.
+#[expect(clippy::struct_excessive_bools, reason = "each says of one thing whether it is so")]
+struct Place {
+    /// The row is the last of its part.
+    last: bool,
+    /// It begins the part in a ring.
+    ring: bool,
+    /// It begins with a chain that stands for a stitch.
+    stands: bool,
+    /// Something was worked already.
+    worked: bool,
 }
 
 /// Widest row of all parts, in stitches.
@@ -355,14 +443,6 @@ pub(super) fn widest(program: &Verified<'_>) -> u32 {
         .chain(program.facts().parts.iter().map(|part| part.start))
         .max()
         .unwrap_or(0)
-}
-
-/// `single crochet` in the terms of the text.
-pub(super) fn full_name(kind: Kind, terms: Terms) -> &'static str {
-    match terms {
-        Terms::Us => kind.us_name(),
-        Terms::Uk => kind.uk_name(),
-    }
 }
 
 /// True when some row of the program is worked in rounds.

@@ -89,6 +89,8 @@ pub(super) struct State {
     pub start: Option<Start>,
     pub rows: Vec<Row>,
     pub rounds: Vec<Round>,
+    /// Rounds with the loops that lie open after each: made, or left by it.
+    pub opens: Vec<(u32, u32, i64)>,
     pub segments: Vec<(String, Segment)>,
     pub shut: bool,
     /// Place of the row below.
@@ -172,6 +174,7 @@ impl Checker<'_> {
             start: None,
             rows: Vec::new(),
             rounds: Vec::new(),
+            opens: Vec::new(),
             segments: Vec::new(),
             shut: false,
             last_at: None,
@@ -189,13 +192,7 @@ impl Checker<'_> {
             self.item(part, index, id, &mut state);
         }
         self.open.push(state.have.filter(|_| state.below != Below::Nothing || !state.rounds.is_empty()));
-        self.made.push(
-            state
-                .rounds
-                .iter()
-                .filter_map(|round| Some((round.first, round.last, i64::from(round.produces?))))
-                .collect(),
-        );
+        self.made.push(state.opens);
         let copies = part.head.and_then(|head| head.copies).map_or(1, |n| n.value);
         if copies == 0 || copies > 10_000 {
             let at = part.head.and_then(|head| head.copies).map_or(part.at, |n| n.at);
@@ -272,6 +269,7 @@ impl Checker<'_> {
                 let leaves = self.fault(part, index, &job, Ok(&solved), state);
                 let begun = solved.lowered.begin.is_some() || solved.lowered.usable.is_some();
                 state.rounds.push(round(&item, Some(&solved), solved.stated));
+                state.opens.push((item.first.unwrap_or(0), item.last.unwrap_or(0), solved.makes));
                 if begun || state.start.is_none() {
                     state.start.get_or_insert(Start::Chain { loops: 0, joined: !part.flat });
                 }
@@ -324,6 +322,7 @@ impl Checker<'_> {
         }
         self.total = self.total.saturating_add((solved.makes.max(0) as u64).saturating_mul(u64::from(times)));
         state.rounds.push(round(&item, Some(&solved), solved.stated));
+        state.opens.push((item.first.unwrap_or(0), item.last.unwrap_or(0), leaves));
         self.holds(&solved.block, id, item.first.unwrap_or(0));
         Self::begin(&solved, state);
         self.remember(&solved, state);

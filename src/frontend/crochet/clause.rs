@@ -1,7 +1,7 @@
 //! Parsers for clauses: stitches, groups, stars, and what steers them.
 
 use super::lex::Tok;
-use super::parse::{FaultKind, Res, Tokens, glued, int, key, name, separator, unit};
+use super::parse::{FaultKind, Res, Tokens, any_key, glued, int, key, name, separator, unit};
 use super::place::{fill, join, multiplier, over, place, times_mark};
 use super::syntax::{Clause, Counts, Node, Num, Op, Place, Sep, Shape, Times, Word};
 use super::words::Key;
@@ -78,6 +78,9 @@ fn clause(input: Tokens<'_>) -> Res<'_, Clause> {
                 let (rest, _) = opt(key(Key::Ch)).parse(input.skip(3))?;
                 Ok((rest, Clause::OtherSide))
             }
+            // In a back pass chains and skips may have its sign too.
+            Key::Neg if matches!(input.key(1), Some(Key::Ch)) => chain(input.skip(1)),
+            Key::Neg if matches!(input.key(1), Some(Key::Sk)) => skip(input.skip(1)),
             Key::Rep if !input.in_star => repeat_all(input),
             Key::Blo | Key::Flo => Ok(loops(input)),
             Key::In if matches!(input.key(1), Some(Key::Blo | Key::Flo)) => Ok(loops(input.skip(1))),
@@ -409,7 +412,7 @@ fn leave(input: Tokens<'_>) -> Res<'_, Clause> {
 }
 
 fn hold(input: Tokens<'_>) -> Res<'_, Clause> {
-    let (rest, (n, (), _, name)) = (int, unit, key(Key::For), name).parse(input.skip(1))?;
+    let (rest, (n, (), _, name)) = (int, unit, any_key(&[Key::For, Key::To]), name).parse(input.skip(1))?;
     Ok((rest, Clause::Hold { n, name }))
 }
 

@@ -241,12 +241,7 @@ fn def(
             if tree.defs.len() < usize::from(u16::MAX) {
                 words.declare(name.trim(), Meaning::Def(tree.defs.len() as u16));
                 let stem = name.trim().split('-').next().filter(|stem| stem.len() < name.trim().len());
-                let base = stem.and_then(|stem| words.get(fold_word(stem).as_bytes())).and_then(|meaning| {
-                    match meaning {
-                        Meaning::Stitch(spelled) => Some(spelled),
-                        _ => None,
-                    }
-                });
+                let base = stem.and_then(|stem| Words::english_stitch(&fold_word(stem)));
                 tree.defs.push(Definition { base, works: works.value as u16, makes: makes.value as u16 });
             }
             Some(Content::Header(Header::Def { name: name_at, works, makes, text }))

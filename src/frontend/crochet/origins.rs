@@ -5,7 +5,7 @@ use super::lex::At;
 use super::lines::fold_name;
 use super::lower::Below;
 use super::plan::{Part, What};
-use super::syntax::{Clause, Node, Origin, Piece};
+use super::syntax::{Clause, Node, Num, Origin, Piece};
 use crate::diag::{Code, Diagnostic};
 use crate::ir::{self, Finish, PartId, Segment, Start};
 use std::collections::BTreeMap;
@@ -62,6 +62,8 @@ impl Checker<'_> {
         let mut segments = Vec::new();
         for piece in pieces {
             match piece {
+                // `+ ch 0` says that the chain is worked on one side only.
+                Piece::Chain(Num { value: 0, .. }) => {}
                 Piece::Chain(n) => segments.push(("ch".to_owned(), Segment::Chain { loops: n.value })),
                 Piece::Part(at) => {
                     let Some((part, name)) = self.earlier(*at, id) else { return Vec::new() };
@@ -79,8 +81,9 @@ impl Checker<'_> {
             }
         }
         // A chain between two pieces is worked on both sides.
-        if let [(_, Segment::Open { .. }), chain @ (_, Segment::Chain { .. }), (_, Segment::Open { .. })] =
-            segments.as_slice()
+        if pieces.len() == segments.len()
+            && let [(_, Segment::Open { .. }), chain @ (_, Segment::Chain { .. }), (_, Segment::Open { .. })] =
+                segments.as_slice()
         {
             let back = chain.clone();
             segments.push(back);
@@ -97,6 +100,11 @@ impl Checker<'_> {
     ) -> Vec<(String, Segment)> {
         let Some((part, name)) = self.earlier(name, id) else { return Vec::new() };
         let mut segments = Vec::new();
+        if spots.is_empty() {
+            // `from Body held`: all that was set aside for this part.
+            let all = self.held.iter().filter(|held| held.from == part && held.by == id);
+            segments.extend(all.map(|held| (name.clone(), Segment::Held { part, loops: held.loops })));
+        }
         for spot in spots {
             let loops = (spot.last.value.saturating_sub(spot.first.value)).saturating_add(1);
             let made = self.made.get(part.0 as usize).and_then(|rounds| {

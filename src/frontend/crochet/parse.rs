@@ -244,7 +244,7 @@ pub(crate) fn name(input: Tokens<'_>) -> Res<'_, At> {
     Ok((end, input.until(end)))
 }
 
-/// Words, as opposed to marks. `rnd` and `row` end a name, for a number follows them.
+/// Words, as opposed to marks. `rnd`, `row`, `held` and `surface` end a name: they say where a part comes from.
 fn is_word(key: Key) -> bool {
     !matches!(
         key,
@@ -272,6 +272,8 @@ fn is_word(key: Key) -> bool {
             | Key::Rnd
             | Key::Row
             | Key::R
+            | Key::Held
+            | Key::Surface
             | Key::And
             | Key::Then
     )

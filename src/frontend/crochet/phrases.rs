@@ -117,7 +117,7 @@ fn phrase(rest: &[Token]) -> (usize, Option<Tok>) {
         Key::Place if key(1) == Some(Key::Marker) => return (2, Some(Tok::Key(Key::Pm))),
         Key::Inv if matches!(key(1), Some(Key::Dec)) => return (2, Some(Tok::Key(Key::Invdec))),
         Key::Turn if key(1) == Some(Key::Ch) => return (2, Some(Tok::Key(Key::Tch))),
-        Key::Change if key(1) == Some(Key::To) => return (2, Some(first.tok)),
+        Key::Change if matches!(key(1), Some(Key::To | Key::For)) => return (2, Some(first.tok)),
         Key::Evenly if key(1) == Some(Key::Spaced) => return (2, Some(first.tok)),
         _ => {}
     }

@@ -226,7 +226,9 @@ fn over_chain(input: Tokens<'_>) -> Res<'_, Place> {
 /// Where a joining slip stitch goes; the flag tells that a chain becomes a ring.
 pub(crate) fn joint(input: Tokens<'_>) -> Res<'_, bool> {
     let (rest, _) = any_key(&[Key::In, Key::To])(input)?;
-    if let Ok((rest, _)) = pair(opt(any_key(&[Key::Form, Key::Make])), key(Key::Ring)).parse(rest) {
+    if let Ok((rest, _)) =
+        pair(opt(any_key(&[Key::Form, Key::Make])), any_key(&[Key::Ring, Key::Mr])).parse(rest)
+    {
         return Ok((rest, true));
     }
     if let Ok((rest, ())) = chain_top(rest) {

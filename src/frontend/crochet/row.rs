@@ -412,6 +412,9 @@ pub(crate) fn part(input: Tokens<'_>) -> Res<'_, PartHead> {
 
 fn from(input: Tokens<'_>) -> Res<'_, Origin> {
     let (rest, name) = name(input.skip(1))?;
+    if rest.key(0) == Some(Key::Held) {
+        return Ok((rest.skip(1), Origin::From { name, spots: Vec::new(), held: true }));
+    }
     let (mut rest, first) = spot(rest)?;
     let mut spots = vec![first];
     while matches!(rest.key(0), Some(Key::Comma | Key::And)) {

@@ -218,8 +218,9 @@ impl Words {
     pub(crate) fn new(language: Language) -> Self {
         let mut words =
             Self { map: Table::new(), capitals: BTreeMap::new(), long: BTreeMap::new(), language };
-        for (spellings, key) in KEYS {
-            for spelling in spellings.split(' ') {
+        for (word, spellings) in Language::English.vocabulary().words {
+            let Some((_, key)) = KEYS.iter().find(|(name, _)| name == word) else { continue };
+            for spelling in *spellings {
                 words.set(spelling, Meaning::Key(*key));
             }
         }
@@ -287,6 +288,15 @@ impl Words {
         self.set(&uk, Meaning::Stitch(Spelled { uk: Some(kind), ..spelled }));
     }
 
+    /// A stitch by its English abbreviation, whatever the language of the file.
+    pub(crate) fn english_stitch(word: &str) -> Option<Spelled> {
+        let of = |name: fn(Kind) -> &'static str| {
+            Kind::ALL.iter().copied().find(|kind| fold_word(name(*kind)).replace(' ', "") == word)
+        };
+        let (us, uk) = (of(Kind::us), of(Kind::uk));
+        (us.is_some() || uk.is_some()).then_some(Spelled { us, uk })
+    }
+
     /// Enters a word; the plural in `s` is found by [`Words::get`].
     pub(crate) fn set(&mut self, word: &str, meaning: Meaning) {
         match pack(word.as_bytes()) {
@@ -345,7 +355,9 @@ impl Words {
     /// All words that a misspelled one may have meant.
     pub(crate) fn known(&self) -> impl Iterator<Item = &'static str> {
         let vocabulary = self.language.vocabulary();
-        let english = KEYS.iter().flat_map(|(words, _)| words.split(' ')).filter(|word| word.len() > 1);
+        let english =
+            Language::English.vocabulary().words.iter().flat_map(|(_, words)| words.iter().copied());
+        let english = english.filter(|word| word.len() > 1);
         let stitches = Kind::ALL.iter().flat_map(|kind| [kind.us(), kind.uk()]);
         let own = vocabulary.stitches.iter().flat_map(|(_, words)| words.iter().copied());
         let other = vocabulary.words.iter().flat_map(|(_, words)| words.iter().copied());
@@ -419,33 +431,34 @@ const EXTRA: &[(&str, Option<Kind>, Option<Kind>)] = &[
     ("cluster", Some(Kind::Cluster), Some(Kind::Cluster)),
 ];
 
+/// The key of each English word of the table, named by its first spelling.
 const KEYS: &[(&str, Key)] = &[
-    ("in into inside", Key::In),
-    ("next foll following", Key::Next),
-    ("each every", Key::Each),
-    ("first 1st", Key::First),
+    ("in", Key::In),
+    ("next", Key::Next),
+    ("each", Key::Each),
+    ("first", Key::First),
     ("last", Key::Last),
     ("same", Key::Same),
     ("as", Key::As),
-    ("join joining", Key::Join),
+    ("join", Key::Join),
     ("from", Key::From),
     ("hook", Key::Hook),
     ("to", Key::To),
-    ("end ending", Key::End),
-    ("around round-about", Key::Around),
+    ("end", Key::End),
+    ("around", Key::Around),
     ("across", Key::Across),
-    ("rep repeat repeated repeating", Key::Rep),
-    ("times time", Key::TimesWord),
-    ("more additional", Key::More),
+    ("rep", Key::Rep),
+    ("times", Key::TimesWord),
+    ("more", Key::More),
     ("once", Key::Once),
     ("twice", Key::Twice),
     ("thrice", Key::Thrice),
     ("for", Key::For),
-    ("with using", Key::With),
-    ("change switch changing", Key::Change),
-    ("turn turning", Key::Turn),
-    ("sk skip miss skipping", Key::Sk),
-    ("leave leaving", Key::Leave),
+    ("with", Key::With),
+    ("change", Key::Change),
+    ("turn", Key::Turn),
+    ("sk", Key::Sk),
+    ("leave", Key::Leave),
     ("hold", Key::Hold),
     ("unworked", Key::Unworked),
     ("held", Key::Held),
@@ -454,7 +467,7 @@ const KEYS: &[(&str, Key)] = &[
     ("close", Key::Closed),
     ("pm", Key::Pm),
     ("on", Key::On),
-    ("other opposite", Key::OtherWord),
+    ("other", Key::OtherWord),
     ("side", Key::Side),
     ("do", Key::Do),
     ("not", Key::Not),
@@ -463,35 +476,35 @@ const KEYS: &[(&str, Key)] = &[
     ("starting", Key::Starting),
     ("evenly", Key::Evenly),
     ("spaced", Key::Spaced),
-    ("counts counting", Key::Counts),
+    ("counts", Key::Counts),
     ("does", Key::Does),
     ("count", Key::Count),
-    ("and &", Key::And),
+    ("and", Key::And),
     ("then", Key::Then),
-    ("rnd rnds round rounds", Key::Rnd),
-    ("row rows", Key::Row),
+    ("rnd", Key::Rnd),
+    ("row", Key::Row),
     ("r", Key::R),
     ("rs", Key::Rs),
     ("ws", Key::Ws),
     ("make", Key::Make),
-    ("mr mc", Key::Mr),
-    ("ring circle", Key::Ring),
+    ("mr", Key::Mr),
+    ("ring", Key::Ring),
     ("form", Key::Form),
     ("top", Key::Top),
-    ("tch t-ch", Key::Tch),
-    ("beg beginning", Key::Beg),
-    ("blo bl", Key::Blo),
-    ("flo fl", Key::Flo),
-    ("inc increase", Key::Inc),
-    ("dec decrease", Key::Dec),
-    ("tog together", Key::Tog),
+    ("tch", Key::Tch),
+    ("beg", Key::Beg),
+    ("blo", Key::Blo),
+    ("flo", Key::Flo),
+    ("inc", Key::Inc),
+    ("dec", Key::Dec),
+    ("tog", Key::Tog),
     ("invdec", Key::Invdec),
     ("even", Key::Even),
     ("at", Key::AtWord),
-    ("st sts stitch stitches", Key::St),
-    ("ch chain", Key::Ch),
-    ("sp space", Key::Sp),
-    ("shell sh", Key::Shell),
+    ("st", Key::St),
+    ("ch", Key::Ch),
+    ("sp", Key::Sp),
+    ("shell", Key::Shell),
     ("you", Key::You),
     ("will", Key::Will),
     ("have", Key::Have),
@@ -500,12 +513,12 @@ const KEYS: &[(&str, Key)] = &[
     ("single", Key::Single),
     ("half", Key::Half),
     ("double", Key::Double),
-    ("treble triple", Key::Treble),
+    ("treble", Key::Treble),
     ("crochet", Key::Crochet),
     ("slip", Key::Slip),
     ("sl", Key::Sl),
     ("magic", Key::Magic),
-    ("loop lp", Key::Loop),
+    ("loop", Key::Loop),
     ("front", Key::FrontWord),
     ("back", Key::BackWord),
     ("post", Key::Post),
@@ -515,8 +528,8 @@ const KEYS: &[(&str, Key)] = &[
     ("marker", Key::Marker),
     ("adjustable", Key::Adjustable),
     ("extended", Key::Extended),
-    ("inv invisible", Key::Inv),
-    ("etss fwp retp tdc tfs thdc tks tps trs tsc tss tslst ttw", Key::Tunisian),
-    ("the a an of this work working", Key::Drop),
+    ("inv", Key::Inv),
+    ("etss", Key::Tunisian),
+    ("the", Key::Drop),
     ("x", Key::Times),
 ];

@@ -2,7 +2,7 @@
 
 use super::MAX_ROUNDS;
 use crate::diag::{Code, Diagnostic, Sink, Span};
-use crate::ir::{Block, MAX_LOOPS, MAX_NESTING, MAX_ROW, Op, Part, Program, Row};
+use crate::ir::{Block, MAX_LOOPS, MAX_NESTING, MAX_ROW, Op, Part, Program, Row, Start};
 
 /// What is wrong with the size of a row.
 enum Fault {
@@ -21,7 +21,9 @@ pub(super) fn check(program: &Program, sink: &mut Sink<'_>) -> bool {
             sink.push(broken("a part is made no times").in_round(&part.name, None));
         }
         let start = part.start.loops();
-        if start == 0 || start > MAX_ROW {
+        // The stitches of a first row may go into a ring, or bring their own chain.
+        let bare = matches!(part.start, Start::Ring { loops: 0 } | Start::Chain { loops: 0, .. });
+        if start > MAX_ROW || (start == 0 && (!bare || part.rows.is_empty())) {
             let code = if start == 0 { Code::BrokenProgram } else { Code::TooLarge };
             let message = format!("{} starts with {start} loops, not 1 to {MAX_ROW}", part.name);
             sink.push(Diagnostic::new(code, message).in_round(&part.name, None));
