@@ -10,11 +10,13 @@ mod first_row;
 mod options;
 mod relax;
 mod rows;
+mod score;
 mod seam;
 mod sheet;
 mod short_rows;
 mod staircase;
 mod symmetric;
+mod tries;
 mod weave;
 
 pub use options::Options;
@@ -71,9 +73,16 @@ pub fn generate(tube: &Tube, gauge: &Gauge, options: &Options, sink: &mut Sink<'
         return fail(sink, Code::TooFewRows, message, "use a smaller stitch or a longer shape");
     };
     sink.stage("stitches");
-    let ground = Ground::new(surface, ends, &rows, gauge, options);
     let most = (3.0 * expected) as usize + 10_000;
-    let Some((sheet, start)) = ground.lay_evenly(sink).or_else(|| ground.weave(most, sink)) else {
+    let laid = Ground::new(surface, ends, &rows, gauge, options).lay_evenly(sink);
+    let laid = laid.map(|(sheet, start)| Laid { sheet, start, turn: turned.by });
+    let Some(Laid { sheet, start, turn }) = laid.or_else(|| {
+        tries::best(options, expected, |options, turn| {
+            let turned = Turned { surface: turned.surface, by: turned.by + turn };
+            let (sheet, start) = Ground::new(&turned, ends, &rows, gauge, options).weave(most, sink)?;
+            Some(Laid { sheet, start, turn: turned.by })
+        })
+    }) else {
         let message =
             "the rows run away: this surface folds over itself, or changes faster than stitches follow";
         return fail(sink, Code::SurfaceBroken, message.into(), GENTLER);
@@ -86,7 +95,15 @@ pub fn generate(tube: &Tube, gauge: &Gauge, options: &Options, sink: &mut Sink<'
     if sheet.point.iter().any(|p| !p.is_finite()) {
         return fail(sink, Code::SurfaceBroken, "stitches ran off this surface".into(), GENTLER);
     }
-    Some(finish::graph(&sheet, &rows, start, ground.poles, turned.by))
+    let poles = Ground::new(surface, ends, &rows, gauge, options).poles;
+    Some(finish::graph(&sheet, &rows, start, poles, turn))
+}
+
+/// A finished sheet, the stitches of its first row, and where around the tube the helix began.
+struct Laid {
+    sheet: Sheet,
+    start: usize,
+    turn: f64,
 }
 
 /// What all ways of laying stitches share.
@@ -144,6 +161,7 @@ impl<'s> Ground<'s> {
             surface,
             &mut sheet,
             Mark { nodes: free, ..Mark::default() },
+            0,
             Effort { sweeps: options.sweeps, squareness: options.squareness },
             Ends {
                 range: self.range,

@@ -24,6 +24,8 @@ pub struct Options {
     pub sweeps: u32,
     /// Weight of a square tile against exact lengths in the final sweeps: higher trades length error for skew.
     pub squareness: f64,
+    /// Tries at a part, with small differences, of which the best is kept; parts over 20,000 stitches get one.
+    pub tries: u32,
     /// Shaping of rotationally symmetric shapes as a designer writes it: even repeats, staggered from round to round.
     pub symmetric: bool,
 }
@@ -34,12 +36,13 @@ impl Default for Options {
             short_rows: true,
             min_short_row: 8,
             max_short_row: 0.6,
-            activation: 1.125,
-            tolerance: 2.0 / 3.0,
+            activation: 1.3,
+            tolerance: 0.5,
             window: 4,
             window_sweeps: 6,
             sweeps: 16,
             squareness: 0.25,
+            tries: 4,
             symmetric: true,
         }
     }
@@ -61,6 +64,7 @@ impl Options {
             ((1..=64).contains(&self.window), "window", "from 1 to 64 rows"),
             (self.window_sweeps <= 1000, "window-sweeps", "at most 1000"),
             (self.sweeps <= 100_000, "sweeps", "at most 100000"),
+            ((1..=1000).contains(&self.tries), "tries", "from 1 to 1000"),
             (between(self.squareness, 0.0, 100.0), "squareness", "from 0 to 100"),
         ]
         .into_iter()

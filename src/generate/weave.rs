@@ -315,7 +315,9 @@ impl<'s> Weaver<'s> {
         let mark = if oldest == 0 { self.free(Mark::default()) } else { self.free(mark) };
         let effort = Effort { sweeps: self.options.window_sweeps, squareness: WINDOW_SQUARENESS };
         let ends = self.ends();
-        self.relaxer.relax(self.surface, &mut self.sheet, mark, effort, ends);
+        // What lies two rows down hardly moves any more.
+        let exact = self.marks[self.marks.len().saturating_sub(1)].nodes;
+        self.relaxer.relax(self.surface, &mut self.sheet, mark, exact, effort, ends);
     }
 
     fn settle_all(&mut self) {
@@ -323,7 +325,7 @@ impl<'s> Weaver<'s> {
         let mark = self.free(Mark::default());
         let effort = Effort { sweeps: self.options.sweeps, squareness: self.options.squareness };
         let ends = Ends { level: Some((self.rows, top)), ..self.ends() };
-        self.relaxer.relax(self.surface, &mut self.sheet, mark, effort, ends);
+        self.relaxer.relax(self.surface, &mut self.sheet, mark, 0, effort, ends);
     }
 
     /// Puts the new tops into the ring, with short rows over them where they lag behind, and short rows over these where

@@ -123,7 +123,7 @@ enum Outcome {
     Wrong(String),
 }
 
-fn compile(spec: &TubeSpec, gauge: Gauge) -> Outcome {
+fn compile(spec: &TubeSpec, gauge: Gauge, options: &Options) -> Outcome {
     let sweep = match Sweep::new(spec) {
         Ok(sweep) => sweep,
         Err(fault) => {
@@ -133,7 +133,7 @@ fn compile(spec: &TubeSpec, gauge: Gauge) -> Outcome {
     };
     let tube = Tube::new("trunk", Box::new(sweep), [spec.start, spec.end]);
     let mut sink = Sink::new();
-    let Some(graph) = generate(&tube, &gauge, &Options::default(), &mut sink) else {
+    let Some(graph) = generate(&tube, &gauge, options, &mut sink) else {
         let reason = sink.diagnostics().iter().find(|found| found.severity == Severity::Error);
         return reason.map_or_else(
             || Outcome::Wrong("refused without a reason".into()),
@@ -172,9 +172,13 @@ fn run(count: u64) {
     let (mut made, mut stitches) = (0, 0);
     let mut refused: BTreeMap<String, u32> = BTreeMap::new();
     let mut wrong: Vec<(usize, String)> = Vec::new();
-    for _ in 0..count {
+    // One surface in eight gets all the tries that the options allow.
+    let once = Options { tries: 1, ..Options::default() };
+    let often = Options::default();
+    for index in 0..count {
         let (spec, gauge) = surface(&mut random);
-        let outcome = catch_unwind(AssertUnwindSafe(|| compile(&spec, gauge)));
+        let options = if index % 8 == 0 { &often } else { &once };
+        let outcome = catch_unwind(AssertUnwindSafe(|| compile(&spec, gauge, options)));
         match outcome.unwrap_or_else(|_| Outcome::Wrong("it panicked".into())) {
             Outcome::Pattern { stitches: more } => (made, stitches) = (made + 1, stitches + more),
             Outcome::Refused(reason) => *refused.entry(reason).or_default() += 1,
@@ -197,4 +201,10 @@ fn run(count: u64) {
 #[test]
 fn two_thousand_random_surfaces_give_a_pattern_or_a_reason() {
     run(2000);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn twenty_thousand_random_surfaces_give_a_pattern_or_a_reason() {
+    run(20_000);
 }

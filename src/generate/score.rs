@@ -1,0 +1,66 @@
+//! How good a settled sheet is, in one number, so that the best of several tries can be kept.
+
+use super::sheet::{EdgeKind, Sheet, TileKind};
+
+/// Mean length error, its root mean square, and skew that weigh the same.
+const USUAL_LENGTH: f64 = 0.04;
+const USUAL_SPREAD: f64 = 0.055;
+const USUAL_SKEW: f64 = 0.09;
+/// A signed mean over this makes the whole too large or too small; its price.
+const BIAS_FREE: f64 = 0.004;
+const BIAS: f64 = 100.0;
+/// Price of an inverted tile as a share of all tiles, and of one at all.
+const INVERTED: f64 = 40.0;
+const ANY_INVERTED: f64 = 0.5;
+
+/// What a try came to: lower is better.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Score {
+    pub total: f64,
+    pub inverted: usize,
+}
+
+impl Score {
+    /// Mean absolute length error with its spread, and mean skew, each by its usual size; a bias and inverted tiles cost extra.
+    pub(super) fn of(sheet: &Sheet) -> Self {
+        let (mut length, mut sum, mut square) = (0.0, 0.0, 0.0);
+        for edge in &sheet.edges {
+            let rest = if edge.kind == EdgeKind::Wale { sheet.height } else { sheet.width };
+            let d = sheet.point[edge.b as usize].distance(sheet.point[edge.a as usize]);
+            let error = d / rest - 1.0;
+            length += error.abs();
+            sum += error;
+            square += error * error;
+        }
+        let (mut skew, mut inverted) = (0.0, 0);
+        for quad in &sheet.quads {
+            let [b0, b1, t0, t1] = quad.corners.map(|id| sheet.point[id as usize]);
+            let across = (b1 - b0) + (t1 - t0);
+            let up = match quad.kind {
+                TileKind::Wales | TileKind::Step => (t0 - b0) + (t1 - b1),
+                TileKind::TurnLeft => t0 - b0,
+                TileKind::TurnRight => t1 - b1,
+            };
+            let size = (across.length_squared() * up.length_squared()).sqrt();
+            skew += if size > 0.0 { (across.dot(up) / size).abs() } else { 0.0 };
+            let corners = quad.corners;
+            if matches!(quad.kind, TileKind::Wales | TileKind::Step)
+                && corners[0] != corners[1]
+                && corners[2] != corners[3]
+            {
+                let jet = sheet.jet(corners[0]);
+                inverted += usize::from(jet.dv.cross(jet.du).dot((b1 - t0).cross(t1 - b0)) <= 0.0);
+            }
+        }
+        let share = |sum: f64, count: usize| sum / count.max(1) as f64;
+        let edges = sheet.edges.len();
+        let lengths =
+            0.5 * (share(length, edges) / USUAL_LENGTH + share(square, edges).sqrt() / USUAL_SPREAD);
+        let bias = BIAS * (share(sum, edges).abs() - BIAS_FREE).max(0.0);
+        let mut total = lengths + share(skew, sheet.quads.len()) / USUAL_SKEW + bias;
+        if inverted > 0 {
+            total += ANY_INVERTED + INVERTED * share(inverted as f64, sheet.quads.len());
+        }
+        Self { total, inverted }
+    }
+}

@@ -1,0 +1,82 @@
+//! Several tries at one part, of which the best is kept: which stitch carries a shaping is a matter of small differences,
+//! and so is how well all of them fit in the end.
+
+use super::Laid;
+use super::options::Options;
+use super::score::Score;
+
+/// Parts of more stitches get one try, or, where it has inverted tiles, a few: the luck of single shapings evens out there.
+const MOST_STITCHES: f64 = 5_000.0;
+const MOST_RESCUED: f64 = 50_000.0;
+/// A score that needs no second try.
+const GOOD: f64 = 1.45;
+/// Further tries for parts on which all have inverted tiles.
+const RESCUES: usize = 8;
+/// Sweeps of a rescue: inverted tiles open slowly.
+const RESCUE_SWEEPS: u32 = 3;
+
+/// How a try differs from the first: where its helix begins, in turns from there; the factor of the activation threshold,
+/// and that of the tolerance; the longest short row as a share of that asked for.
+struct Change {
+    turn: f64,
+    activation: f64,
+    tolerance: f64,
+    longest: f64,
+}
+
+const fn change(turn: f64, activation: f64, tolerance: f64, longest: f64) -> Change {
+    Change { turn, activation, tolerance, longest }
+}
+
+const CHANGES: [Change; 12] = [
+    change(0.0, 1.0, 1.0, 1.0),
+    change(0.05, 0.865, 1.333, 1.0),
+    change(-0.05, 1.0, 1.0, 1.0),
+    change(0.05, 1.0, 1.0, 1.0),
+    change(-0.02, 0.865, 1.333, 1.0),
+    change(0.1, 1.0, 1.0, 1.0),
+    change(-0.1, 1.0, 1.0, 0.9),
+    change(0.0, 1.15, 0.8, 0.8),
+    change(0.03, 1.3, 0.6, 1.0),
+    change(-0.03, 1.3, 0.6, 0.8),
+    change(0.2, 1.0, 1.0, 1.0),
+    change(-0.2, 1.0, 1.0, 1.0),
+];
+
+/// The options of a try, and how far around the tube its helix begins.
+fn variant(base: &Options, index: usize) -> (Options, f64) {
+    let change = &CHANGES[index % CHANGES.len()];
+    let mut options = base.clone();
+    options.activation *= change.activation;
+    options.tolerance = (options.tolerance * change.tolerance).min(options.activation);
+    options.max_short_row *= change.longest;
+    if index >= base.tries as usize {
+        options.sweeps = options.sweeps.saturating_mul(RESCUE_SWEEPS);
+    }
+    (options, change.turn)
+}
+
+/// The best of the tries that `lay` makes; `None` when none comes to an end.
+pub(super) fn best(
+    options: &Options,
+    expected: f64,
+    mut lay: impl FnMut(&Options, f64) -> Option<Laid>,
+) -> Option<Laid> {
+    let tries = if expected > MOST_STITCHES { 1 } else { options.tries as usize };
+    let most = if options.tries > 1 && expected <= MOST_RESCUED { tries + RESCUES } else { tries };
+    let mut best: Option<(Score, Laid)> = None;
+    for index in 0..most {
+        let enough = if index < tries { GOOD } else { f64::MAX };
+        if best.as_ref().is_some_and(|(score, _)| score.inverted == 0 && score.total <= enough) {
+            break;
+        }
+        let (options, turn) = variant(options, index);
+        let Some(laid) = lay(&options, turn) else { continue };
+        let score = Score::of(&laid.sheet);
+        if best.as_ref().is_none_or(|(so_far, _)| so_far.total.is_nan() || score.total < so_far.total - 1e-9)
+        {
+            best = Some((score, laid));
+        }
+    }
+    best.map(|(_, laid)| laid)
+}
