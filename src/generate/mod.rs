@@ -19,7 +19,7 @@ mod symmetric;
 mod tries;
 mod weave;
 
-pub use options::Options;
+pub use options::{Options, Preset};
 
 use crate::diag::{Code, Diagnostic, Sink};
 use crate::ir::{Gauge, Graph, MAX_LOOPS};
@@ -50,6 +50,7 @@ pub fn generate(tube: &Tube, gauge: &Gauge, options: &Options, sink: &mut Sink<'
         let message = format!("the option `{name}` is out of range");
         return fail(sink, Code::OptionOutOfRange, message, &format!("give it a value {right}"));
     }
+    let options = &options.resolved();
     let turned = Turned::to_slowest_side(&*tube.surface);
     let surface: &dyn ParametricSurface = &turned;
     let ends = [tube.start, tube.end];

@@ -2,10 +2,23 @@
 
 use serde::Deserialize;
 
+/// A set of options under one name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Preset {
+    /// The options as they stand.
+    #[default]
+    Std,
+    /// For live editing: one try, a smaller window and fewer sweeps.
+    Fast,
+}
+
 /// Options of the generator. The defaults serve every shape; the names follow the paper where it has one.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Options {
+    /// `fast` caps tries, window and sweeps.
+    pub preset: Preset,
     /// Short rows on or off. Without them a bent tube keeps one count of rows on both sides and its tiles shear.
     pub short_rows: bool,
     /// Least stitches of one pass of a short row (paper, section 3.3: 4). Shorter ones make more turns for little shape.
@@ -33,6 +46,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
+            preset: Preset::Std,
             short_rows: true,
             min_short_row: 8,
             max_short_row: 0.6,
@@ -49,6 +63,20 @@ impl Default for Options {
 }
 
 impl Options {
+    /// The options with those of the preset taken in.
+    pub(super) fn resolved(&self) -> Self {
+        match self.preset {
+            Preset::Std => self.clone(),
+            Preset::Fast => Self {
+                window: self.window.min(3),
+                window_sweeps: self.window_sweeps.min(4),
+                sweeps: self.sweeps.min(8),
+                tries: 1,
+                ..self.clone()
+            },
+        }
+    }
+
     /// The first option out of range: its name and what would be right.
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
         let between = |x: f64, low: f64, high: f64| (low..=high).contains(&x);
