@@ -8,7 +8,7 @@
 //! again from them.
 
 use super::rows::Rows;
-use super::sheet::{Edge, EdgeKind, Quad, Sheet, TileKind};
+use super::sheet::{Edge, Quad, Sheet, TileKind};
 use crate::shape::ParametricSurface;
 use glam::{DVec3, Vec3A, Vec3Swizzles};
 
