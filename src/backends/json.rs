@@ -93,8 +93,9 @@ fn write_part(
     out.write_all(b"\"rounds\": [")?;
     let words = Words::new(program, part, Terms::Us, Language::English, Arrows::Unicode);
     let mut first = true;
-    for (row, counts) in part.rows.iter().zip(&facts.rows) {
-        let body = round_body(program, row, counts, &words);
+    for (place, (row, counts)) in part.rows.iter().zip(&facts.rows).enumerate() {
+        let begins = place == 0 && matches!(part.start, Start::Ring { loops: 0 });
+        let body = round_body(program, row, counts, &words, begins);
         for round in 0..row.times {
             let comma = if std::mem::take(&mut first) { "" } else { "," };
             write!(out, "{comma}\n{{\"number\": {}, {body}}}", counts.number.saturating_add(round))?;
@@ -114,12 +115,12 @@ fn write_part(
 }
 
 /// All of a round but its number, which folded rounds share.
-fn round_body(program: &Program, row: &Row, counts: &RowFacts, words: &Words<'_>) -> String {
+fn round_body(program: &Program, row: &Row, counts: &RowFacts, words: &Words<'_>, begins: bool) -> String {
     let mut body = format!(
         "\"consumes\": {}, \"produces\": {}, \"text\": {}, \"steps\": [",
         counts.consumes,
         counts.produces,
-        quoted(&words.row(&row.body, false))
+        quoted(&words.row(&row.body, begins))
     );
     use std::fmt::Write as _;
     let mut first = true;

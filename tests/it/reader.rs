@@ -261,3 +261,31 @@ fn a_huge_line_and_a_huge_file_are_refused() {
     assert_eq!(read(line.as_bytes()), ["E0006"]);
     assert_eq!(read(&vec![b'x'; 100_000_000]), ["E0006"]);
 }
+
+#[test]
+fn granny_squares_are_worked_space_by_space() {
+    let square = |second: &str| {
+        format!(
+            "terms: us\nRnd 1: magic ring, ch 3 (counts as dc), 2 dc in ring, ch 2, (3 dc in ring, ch 2) x 3, join with sl st (12)\n\
+             Rnd 2: {second}, join with sl st\n"
+        )
+    };
+    let plain: &[&str] = &[];
+    let checked = |text: &str| check(text, &Conventions::default()).1.unwrap();
+    for (second, made) in [
+        ("*(3 dc, ch 2, 3 dc) in next ch-2 sp, ch 1; rep from * around", 24),
+        ("(3 dc in next ch-2 sp, ch 1) x 4", 12),
+        (
+            "(3 dc, ch 2, 3 dc) in next ch-2 sp, ch 1, *(3 dc, ch 2, 3 dc) in next ch-2 sp, ch 1; rep from * 2 more times",
+            24,
+        ),
+    ] {
+        let text = square(second);
+        let found = read(text.as_bytes());
+        let errors: Vec<&String> = found.iter().filter(|code| code.starts_with('E')).collect();
+        assert_eq!(errors, plain, "{second}");
+        let program = checked(&text).program.expect("a pattern");
+        assert!(picot::ir::verify::verify(&program, &mut Sink::new()).is_some(), "{second}");
+        assert_eq!(checked(&text).parts[0].rounds[1].produces, Some(made), "{second}");
+    }
+}

@@ -85,6 +85,8 @@ pub(super) struct State {
     pub have: Option<i64>,
     pub below: Below,
     pub chain_counted: bool,
+    /// Chain spaces of the row below.
+    pub spaces: Option<u32>,
     pub dominant: Kind,
     pub start: Option<Start>,
     pub rows: Vec<Row>,
@@ -170,6 +172,7 @@ impl Checker<'_> {
             have: Some(0),
             below: Below::Nothing,
             chain_counted: false,
+            spaces: None,
             dominant: Kind::Sc,
             start: None,
             rows: Vec::new(),
@@ -228,6 +231,7 @@ impl Checker<'_> {
             chain_counted: state.chain_counted,
             dominant: state.dominant,
             color: self.color,
+            spaces: state.spaces,
             segments: if state.rows.is_empty() { &state.segments } else { &[] },
         }
     }
@@ -291,6 +295,7 @@ impl Checker<'_> {
 
     fn remember(&mut self, solved: &Solved, state: &mut State) {
         state.chain_counted = solved.lowered.chain_counted;
+        state.spaces = super::solve::spaces(&solved.block);
         if let Some(kind) = solved.lowered.dominant {
             state.dominant = kind;
         } else if let Some(kind) = main_kind(&solved.block) {
@@ -415,7 +420,7 @@ impl Checker<'_> {
             let found = Diagnostic::new(Code::SpreadEvenly, "spread by equal gaps, half a gap at the start");
             self.say(found.in_round(&part.name, round), at, "");
         }
-        if solved.lowered.spaces {
+        if solved.lowered.spaces.is_some() {
             let found = Diagnostic::new(
                 Code::NotChecked,
                 "goes into chain spaces: checked by count, not loop by loop",

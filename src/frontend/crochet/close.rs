@@ -13,6 +13,7 @@ pub(crate) fn close(
     have: Option<i64>,
     lowered: &Lowered,
     stated: Option<u32>,
+    spaces: Option<u32>,
 ) -> Result<(), Trouble> {
     let trouble = |code, message: String| Trouble::new(code, site.at, message);
     let limit = || Trouble::new(Code::Limit, site.at, "the numbers multiply to too many loops");
@@ -57,7 +58,10 @@ pub(crate) fn close(
     }
     let times = if per <= 0 {
         // A repeat into chain spaces goes by place; only its count can tell how often.
-        by_count(&site, before, pass, after, lowered, stated)?
+        match by_place(&site, lowered, spaces) {
+            Some(times) if stated.is_none() => i64::from(times),
+            _ => by_count(&site, before, pass, after, lowered, stated)?,
+        }
     } else {
         let room = have - rest - partial;
         if room < 0 || room % per != 0 || (room == 0 && site.partial.is_none()) {
@@ -110,6 +114,13 @@ fn even(
     Ok(())
 }
 
+/// Passes of a repeat that goes into chain spaces, when those of the row below come out even.
+fn by_place(site: &Site, lowered: &Lowered, spaces: Option<u32>) -> Option<u32> {
+    let room = spaces?.checked_sub(lowered.spaces?)?;
+    let times = room.checked_div(site.spaces)?;
+    (times > 0 && times * site.spaces == room).then_some(times)
+}
+
 fn by_count(
     site: &Site,
     before: Effect,
@@ -121,10 +132,10 @@ fn by_count(
     let fixed = before.behind + after.behind;
     let room = stated.map(|stated| i64::from(stated) - fixed);
     match room {
-        Some(room) if lowered.spaces && pass.behind > 0 && room > 0 && room % pass.behind == 0 => {
+        Some(room) if lowered.spaces.is_some() && pass.behind > 0 && room > 0 && room % pass.behind == 0 => {
             Ok(room / pass.behind)
         }
-        Some(room) if lowered.spaces && pass.behind > 0 => Err(Trouble::new(
+        Some(room) if lowered.spaces.is_some() && pass.behind > 0 => Err(Trouble::new(
             Code::CountDiffers,
             site.at,
             format!("a repeat that makes {} each time cannot make {room}", pass.behind),

@@ -38,8 +38,11 @@ impl Lower<'_> {
             }
             Times::More(n) => self.repeated(body, self.num(n).saturating_add(1), n.at, at, out),
             Times::Fill(fill) => {
+                let before = self.out.spaces;
                 let block = self.inner(body)?;
-                self.fill(fill, block, None, at, out)
+                self.fill(fill, block, None, at, out)?;
+                self.take_spaces(before);
+                Ok(())
             }
             Times::Place(place) => self.gathered(body, place, at, out),
         }
@@ -57,8 +60,11 @@ impl Lower<'_> {
         match (stop, times, to_stop) {
             (Some(stop), Times::Fill(fill), true) => {
                 let partial = self.inner(body.get(..stop).unwrap_or_default())?;
+                let before = self.out.spaces;
                 let block = self.inner(body)?;
-                self.fill(fill, block, Some(partial), at, out)
+                self.fill(fill, block, Some(partial), at, out)?;
+                self.take_spaces(before);
+                Ok(())
             }
             (None, _, true) => {
                 Err(Trouble::new(Code::Unbalanced, at, "`ending at **`, but the repeat has no `**`"))
@@ -95,7 +101,13 @@ impl Lower<'_> {
             return Err(Trouble::new(Code::BadMultiplier, number, "repeated 0 times")
                 .help("leave the repeat out, or say how often it is worked"));
         }
+        let before = self.out.spaces;
         let block = self.inner(body)?;
+        if self.out.spaces != before {
+            let own = before.unwrap_or(0);
+            let pass = self.out.spaces.unwrap_or(0).saturating_sub(own);
+            self.out.spaces = Some(own.saturating_add(pass.saturating_mul(times)));
+        }
         if block.is_empty() {
             return Err(Trouble::new(Code::MissingOperand, at, "nothing to repeat"));
         }
@@ -110,6 +122,17 @@ impl Lower<'_> {
             out.push(Op::Repeat { body: block, times }, span);
         }
         Ok(())
+    }
+
+    /// The chain spaces named since `before` belong to the passes of the open end.
+    fn take_spaces(&mut self, before: Option<u32>) {
+        let all = self.out.spaces.unwrap_or(0);
+        if let Some(site) = &mut self.out.site {
+            site.spaces = all.saturating_sub(before.unwrap_or(0));
+            if self.out.spaces.is_some() {
+                self.out.spaces = Some(before.unwrap_or(0));
+            }
+        }
     }
 
     /// An open end at this place of the row.
@@ -143,7 +166,7 @@ impl Lower<'_> {
             return Err(two_fills(at));
         }
         self.worked = true;
-        self.out.site = Some(Site { index, body, partial, last, at, even: None });
+        self.out.site = Some(Site { index, body, partial, last, at, spaces: 0, even: None });
         Ok(())
     }
 
@@ -152,7 +175,7 @@ impl Lower<'_> {
         let mut block = self.inner(body)?;
         let first = match place {
             Place::Space(_) => {
-                self.out.spaces = true;
+                self.enter_space();
                 block = space(&block);
                 0
             }

@@ -77,6 +77,8 @@ pub(crate) struct Place0<'p> {
     pub chain_counted: bool,
     pub dominant: Kind,
     pub color: Option<u16>,
+    /// Chain spaces of the row below, where they can be told.
+    pub spaces: Option<u32>,
     pub segments: &'p [(String, Segment)],
 }
 
@@ -91,6 +93,8 @@ pub(crate) struct Site {
     /// Loops that must be left for the clauses behind it.
     pub last: Option<Num>,
     pub at: At,
+    /// Chain spaces that one pass goes into.
+    pub spaces: u32,
     /// Spread this stitch so often among the rest.
     pub even: Option<(Stitch, u32)>,
 }
@@ -107,7 +111,8 @@ pub(crate) struct Lowered {
     pub other_side: bool,
     /// Loops may remain.
     pub leave_rest: bool,
-    pub spaces: bool,
+    /// Chain spaces that the row goes into, without what an open end adds; `None` where it has none to do with spaces.
+    pub spaces: Option<u32>,
     pub shut: bool,
     /// A count that stood as the last clause.
     pub tail: Option<Num>,
@@ -387,7 +392,7 @@ impl<'l> Lower<'l> {
             }
             Clause::Skip { n, space } => {
                 if *space {
-                    self.out.spaces = true;
+                    self.enter_space();
                 } else {
                     let n = self.number(*n, 1);
                     self.work(Stitch::plain(Kind::Skip), n, at, out);

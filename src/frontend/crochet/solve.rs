@@ -7,7 +7,7 @@ use super::lex::At;
 use super::lower::{Begin, Below, Change, File, Lower, Lowered, Place0, Trouble};
 use super::syntax::{Count, CountUnit, Node};
 use crate::diag::Code;
-use crate::ir::{Block, Direction, Kind, MAX_ROW, Op};
+use crate::ir::{Block, Direction, Kind, MAX_ROW, Op, Stitch};
 
 /// A row whose operations are complete.
 #[derive(Clone, Debug)]
@@ -187,7 +187,7 @@ impl Job<'_> {
             return Err(no_foundation(site.at));
         }
         if let Some(site) = &lowered.site {
-            super::close::close(&mut block, site.clone(), have, &lowered, stated_count)?;
+            super::close::close(&mut block, site.clone(), have, &lowered, stated_count, self.place.spaces)?;
         }
         let mut direction = Direction::Forward;
         let effect =
@@ -269,7 +269,16 @@ impl Job<'_> {
         if used > have || effect.need_ahead > have {
             return Some(self.over(solved, used, effect.need_ahead, have));
         }
-        if used < have && !solved.lowered.spaces {
+        if used < have && solved.lowered.spaces.is_some() {
+            // What lies between the spaces is passed over.
+            let loops = (have - used).min(i64::from(u32::MAX)) as u32;
+            let skip = Op::Work { stitch: Stitch::plain(Kind::Skip), times: loops };
+            let tail = solved.block.ops().iter().rev().take_while(|op| ends(op)).count();
+            let after = solved.block.split_off(solved.block.ops().len() - tail);
+            solved.block.push(skip, self.file.source.span(self.at.range()));
+            solved.block.append(after);
+            solved.works += i64::from(loops);
+        } else if used < have {
             let turned = solved.lowered.ends_in_turn && conventions.is(Setting::Unworked, "turn");
             if turned || conventions.is(Setting::Unworked, "any") {
                 let loops = (have - used).min(i64::from(u32::MAX)) as u32;
@@ -440,7 +449,8 @@ fn implicit(lowered: &mut Lowered, have: Option<i64>) {
     {
         let body = std::mem::take(&mut lowered.block);
         let at = lowered.first_work.unwrap_or_default();
-        lowered.site = Some(super::lower::Site { index: 0, body, partial: None, last: None, at, even: None });
+        lowered.site =
+            Some(super::lower::Site { index: 0, body, partial: None, last: None, at, spaces: 0, even: None });
     }
 }
 
@@ -477,4 +487,49 @@ fn mixed(block: &Block, first: &mut Option<Kind>) -> bool {
         Op::Repeat { body, .. } => mixed(body, first),
         _ => false,
     })
+}
+
+/// True for what ends a row without working a loop.
+fn ends(op: &Op) -> bool {
+    match op {
+        Op::Work { stitch, .. } => stitch.works + stitch.makes == 0,
+        Op::Leave { .. } | Op::Color(_) => true,
+        Op::Repeat { .. } | Op::Turn(_) | Op::Hold { .. } => false,
+    }
+}
+
+/// Chain spaces that a row makes. `None` where a repeat hides too many.
+pub(crate) fn spaces(block: &Block) -> Option<u32> {
+    /// Spaces, whether the block begins with chains, and whether it ends with them.
+    fn of(block: &Block) -> Option<(u64, Option<bool>, bool)> {
+        let (mut sum, mut first, mut chain) = (0_u64, None, false);
+        for op in block.ops() {
+            let (more, begins, ends) = match op {
+                Op::Work { stitch, .. } if stitch.kind == Kind::Ch => (1, Some(true), true),
+                Op::Work { stitch, .. } if stitch.works + stitch.makes > 0 => (0, Some(false), false),
+                Op::Repeat { body, times } => {
+                    let (one, begins, ends) = of(body)?;
+                    let seam = u64::from(begins == Some(true) && ends);
+                    let times = u64::from(*times);
+                    let all = one.checked_mul(times)?.checked_sub(seam * times.saturating_sub(1))?;
+                    (all, begins, ends)
+                }
+                _ => continue,
+            };
+            let Some(starts) = begins else { continue };
+            sum = sum.checked_add(more)?.checked_sub(u64::from(chain && starts))?;
+            first.get_or_insert(starts);
+            chain = ends;
+        }
+        Some((sum, first, chain))
+    }
+    // A chain that stands for the first stitch is no space.
+    let first = block.ops().iter().take_while(|op| match op {
+        Op::Work { stitch, .. } => stitch.kind == Kind::Ch || stitch.works + stitch.makes == 0,
+        Op::Color(_) => true,
+        Op::Repeat { .. } | Op::Turn(_) | Op::Hold { .. } | Op::Leave { .. } => false,
+    });
+    let stands = |op: &Op| matches!(op, Op::Work { stitch, .. } if stitch.makes > 0);
+    let standing = u64::from(first.into_iter().any(stands));
+    u32::try_from(of(block)?.0.checked_sub(standing)?).ok()
 }

@@ -15,6 +15,11 @@ impl Lower<'_> {
         self.file.source.span(at.range())
     }
 
+    /// Notes that the row goes into one more chain space.
+    pub(crate) fn enter_space(&mut self) {
+        self.out.spaces = Some(self.out.spaces.unwrap_or(0).saturating_add(1));
+    }
+
     /// A number of the text, or what a trial puts in its place.
     pub(crate) fn num(&self, n: Num) -> u32 {
         match self.change {
@@ -276,7 +281,7 @@ impl Lower<'_> {
                 }
             }
             Some(Place::Space(_)) => {
-                self.out.spaces = true;
+                self.enter_space();
                 self.work(Stitch { works: 0, entry: Entry::Space, ..stitch }, times, at, out);
             }
             Some(Place::Ring) => {

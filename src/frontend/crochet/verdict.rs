@@ -228,6 +228,7 @@ fn onward(
             joined: part.joined,
             chain_counted: false,
             dominant: state.dominant,
+            spaces: None,
             color: None,
             segments: &[],
         };

@@ -6,7 +6,7 @@ pub(super) static WORDS: &[(&str, &[&str])] = &[
     ("next", &["next", "foll", "following"]),
     ("each", &["each", "every"]),
     ("first", &["first", "1st"]),
-    ("last", &["last"]),
+    ("last", &["last", "remaining"]),
     ("same", &["same"]),
     ("as", &["as"]),
     ("join", &["join", "joining"]),
