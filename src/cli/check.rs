@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &Check, report: Report) -> Result<Status, Failure> 
         let mut sources = Sources::new(&files::load);
         let watch = Watch::new(None);
         let mut sink = Sink::with_observer(&watch);
-        let parts = check(path, arguments, &routed, &stdin, &mut sources, &mut sink)?;
+        let held = check(path, arguments, &routed, &stdin, &mut sources, &mut sink)?;
         if sink.has_errors() {
             status = Status::InputErrors;
         }
@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &Check, report: Report) -> Result<Status, Failure> 
         match arguments.format {
             CheckFormat::Human => {
                 report::print(&report.render(&sources, found));
-                report.remark(&format!("{path}: {}", verdict(found)));
+                report.remark(&format!("{path}: {}{}", verdict(found), held.summary()));
             }
             CheckFormat::Short => {
                 let positions = Positions::new(&sources);
@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &Check, report: Report) -> Result<Status, Failure> 
                     lines.push('\n');
                 }
             }
-            CheckFormat::Json => values.push(file(path, &parts, found, &sources)?),
+            CheckFormat::Json => values.push(file(path, &held, found, &sources)?),
         }
     }
     match arguments.format {
@@ -59,6 +59,39 @@ pub(crate) fn run(arguments: &Check, report: Report) -> Result<Status, Failure> 
         }
     }
     Ok(status)
+}
+
+/// What a file holds, beside its findings.
+#[derive(Default)]
+struct Held {
+    /// Parts of a pattern with their rounds.
+    parts: Vec<Value>,
+    /// What a machine program amounts to, with the machine that it was run on.
+    run: Option<(machine::Report, Option<String>)>,
+}
+
+impl Held {
+    fn parts(parts: Vec<Value>) -> Self {
+        Self { parts, run: None }
+    }
+
+    /// The figures of a machine program in a few words.
+    fn summary(&self) -> String {
+        let Some((run, _)) = &self.run else { return String::new() };
+        format!(
+            "; {} operations in {} passes, {} loops, widest rack {}, largest stack {}",
+            run.operations, run.passes, run.loops, run.widest_rack, run.largest_stack
+        )
+    }
+
+    fn run_object(&self) -> Option<Value> {
+        let (run, machine) = self.run.as_ref()?;
+        Some(
+            json!({ "machine": machine, "operations": run.operations, "passes": run.passes, "loops": run.loops,
+            "transfers": run.transfers, "widest_rack": run.widest_rack.needles(), "largest_stack": run.largest_stack,
+            "longest_float": run.longest_float, "longest_link": run.longest_link, "held": run.held }),
+        )
+    }
 }
 
 /// Findings in a few words.
@@ -75,7 +108,7 @@ fn verdict(found: &[Diagnostic]) -> String {
     if text.is_empty() { "ok".to_owned() } else { text }
 }
 
-/// Checks one file; returns its parts when it is a pattern.
+/// Checks one file; returns what it holds.
 fn check(
     path: &str,
     arguments: &Check,
@@ -83,7 +116,7 @@ fn check(
     stdin: &[u8],
     sources: &mut Sources<'_>,
     sink: &mut Sink<'_>,
-) -> Result<Vec<Value>, Failure> {
+) -> Result<Held, Failure> {
     let reader = reader_of(path, arguments.reading.from.as_deref())?;
     if reader.name == crochet::READER.name && arguments.against.is_none() {
         let conventions = &routed.options.conventions;
@@ -91,7 +124,7 @@ fn check(
             mend(path, conventions)?;
         }
         let source = files::open(sources, path, stdin)?;
-        return Ok(written(&source, conventions, sink));
+        return Ok(Held::parts(written(&source, conventions, sink)));
     }
     let source = files::open(sources, path, stdin)?;
     let input = picot::read(&source, reader, &routed.options, sources, sink);
@@ -102,7 +135,9 @@ fn check(
         Some(Input::Code(code)) => {
             let named = code.header("Machine").and_then(Machine::named);
             let machine = routed.machine.as_ref().or(named.as_ref());
-            let sound = machine::check(&code, machine, sink).is_some();
+            let before = sink.errors();
+            let run = machine::execute(&code, machine, sink).report;
+            let sound = sink.errors() == before;
             if let (true, Some(shape)) = (sound, &arguments.against) {
                 let reader = reader_of(shape, None)?;
                 let source = files::open(sources, shape, stdin)?;
@@ -110,13 +145,14 @@ fn check(
                     validate(&program, &code, machine, &Options::default(), sink);
                 }
             }
-            Ok(Vec::new())
+            let name = machine.map(|machine| machine.name.clone());
+            Ok(Held { parts: Vec::new(), run: Some((run, name)) })
         }
         Some(Input::Program(program)) => {
             verify(&program, sink);
-            Ok(parts(&program))
+            Ok(Held::parts(parts(&program)))
         }
-        Some(Input::Shape(_)) | None => Ok(Vec::new()),
+        Some(Input::Shape(_)) | None => Ok(Held::default()),
     }
 }
 
@@ -157,7 +193,7 @@ fn mend(path: &str, conventions: &Conventions) -> Result<(), Failure> {
     Ok(())
 }
 
-fn file(path: &str, parts: &[Value], found: &[Diagnostic], sources: &Sources<'_>) -> Result<Value, Failure> {
+fn file(path: &str, held: &Held, found: &[Diagnostic], sources: &Sources<'_>) -> Result<Value, Failure> {
     let positions = Positions::new(sources);
     let ok = found.iter().all(|diagnostic| diagnostic.severity != Severity::Error);
     let diagnostics = found
@@ -165,7 +201,12 @@ fn file(path: &str, parts: &[Value], found: &[Diagnostic], sources: &Sources<'_>
         .map(|diagnostic| serde_json::to_value(object(diagnostic, &positions)))
         .collect::<Result<Vec<_>, _>>()
         .map_err(|error| Failure::usage(error.to_string()))?;
-    Ok(json!({ "path": path, "ok": ok, "parts": parts, "diagnostics": diagnostics }))
+    let run = held.run_object();
+    let mut value = json!({ "path": path, "ok": ok, "parts": held.parts, "diagnostics": diagnostics });
+    if let (Some(run), Some(object)) = (run, value.as_object_mut()) {
+        object.insert("run".to_owned(), run);
+    }
+    Ok(value)
 }
 
 fn parts(program: &Program) -> Vec<Value> {

@@ -1,10 +1,15 @@
 //! Several pieces on one machine: limbs that are set aside and joined, flat pieces, colors, and what stays impossible.
 
 use super::machine::{faults, lowered, machines, program, sc, text, through_kcode, work};
-use picot::diag::Sink;
-use picot::ir::machine::execute;
+use picot::backends::kcode;
+use picot::diag::{Sink, Sources};
+use picot::frontend::{self, Input};
+use picot::ir::machine::profile::{Increase, Transfer};
+use picot::ir::machine::{Code, execute};
 use picot::ir::{Finish, Kind, Op, Part, PartId, Pattern, Program, Segment, Start, Stitch};
 use picot::lower::machine::{Options, lower, validate::validate};
+use std::io;
+use std::path::Path;
 
 /// Several parts as a program.
 fn parts(parts: Vec<Part>) -> Program {
@@ -257,4 +262,84 @@ fn loops_of_finished_fabric_are_refused_or_sewn() {
         );
         assert!(validate(&program, &made.code, Some(&machine), &options, &mut sink));
     }
+}
+
+#[test]
+fn what_the_profile_asks_for_is_done() {
+    let grown = program(
+        Start::Chain { loops: 16, joined: true },
+        vec![
+            vec![sc(3), work(Stitch::INC, 1), sc(7), work(Stitch::INC, 1), sc(4)],
+            vec![sc(18)],
+            vec![sc(1), work(Stitch::INC, 1), sc(10), work(Stitch::INC, 1), sc(5)],
+            vec![sc(20)],
+        ],
+        Finish::Open,
+    );
+    let count = |code: &Code, opcode: &str| code.ops().iter().filter(|op| op.opcode() == opcode).count();
+    for mut machine in machines() {
+        let tucked = lowered(&grown, &machine).unwrap();
+        assert_eq!(count(&tucked.code, "split"), 0);
+        machine.methods.increase = Increase::Split;
+        let split = lowered(&grown, &machine).unwrap();
+        assert_eq!(faults(&grown, &split.code, &machine), [""; 0], "{}", text(&split.code));
+        assert!(count(&split.code, "split") >= 3, "{}", text(&split.code));
+        if machine.name == "kniterate" {
+            assert_eq!(faults(&grown, &through_kcode(&split.code), &machine), [""; 0]);
+            // Transfers in two passes instead of four.
+            let passes = |code: &Code| {
+                let mut bytes = Vec::new();
+                kcode::write(code, &mut bytes, &mut Sink::new()).unwrap();
+                String::from_utf8(bytes).unwrap().matches("\nFRNT:").count()
+            };
+            machine.methods.transfer = Transfer::TwoPass;
+            let two = lowered(&grown, &machine).unwrap();
+            assert!(passes(&two.code) < passes(&split.code));
+            assert_eq!(faults(&grown, &through_kcode(&two.code), &machine), [""; 0]);
+        }
+    }
+    let [mut machine, _] = machines();
+    let rounds = vec![vec![sc(14)], vec![sc(14)]];
+    let leg =
+        Part { copies: 2, ..part("leg", Start::Chain { loops: 14, joined: true }, rounds, Finish::Open) };
+    let body = part("body", join(vec![open(0, 14), open(0, 14)]), vec![vec![sc(28)]], Finish::Open);
+    let legs = parts(vec![leg, body]);
+    let plain = lowered(&legs, &machine).unwrap();
+    (machine.rack.preferred, machine.limits.link_stretch) = (4.0, 12);
+    let wide = lowered(&legs, &machine).unwrap();
+    assert_eq!(faults(&legs, &wide.code, &machine), [""; 0]);
+    assert!(wide.report.widest_rack > plain.report.widest_rack, "{:?} {:?}", wide.report, plain.report);
+    machine.rack.preferred = 1.0;
+    let reasons = lowered(&legs, &machine).unwrap_err();
+    assert!(reasons[0].starts_with("E2202 loops are moved to their neighbors by racks of 2"), "{reasons:?}");
+    let [mut machine, _] = machines();
+    machine.bed.half_gauge = false;
+    assert!(lowered(&legs, &machine).unwrap_err()[0].starts_with("E2202 tubes need every second needle"));
+}
+
+#[test]
+#[expect(clippy::disallowed_methods, reason = "the cases are files")]
+fn written_patterns_with_limbs_are_knit() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/it/cases/machine");
+    let mut seen = 0;
+    for entry in folder.read_dir().unwrap().flatten() {
+        let loader = |_: &str| -> io::Result<Vec<u8>> { Err(io::ErrorKind::NotFound.into()) };
+        let mut sources = Sources::new(&loader);
+        let source = sources.add("pattern.txt", std::fs::read(entry.path()).unwrap()).unwrap();
+        let mut sink = Sink::new();
+        let input = picot::read(
+            &source,
+            &frontend::crochet::READER,
+            &picot::Options::default(),
+            &mut sources,
+            &mut sink,
+        );
+        let Some(Input::Program(program)) = input else {
+            panic!("{}: {:?}", entry.path().display(), sink.take())
+        };
+        assert!(!sink.has_errors(), "{}: {:?}", entry.path().display(), sink.take());
+        knit_on_both(&program);
+        seen += 1;
+    }
+    assert!(seen >= 4);
 }

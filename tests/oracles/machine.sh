@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Machine programs of small shapes against two checkers that share no code with Picot: a simulator of a V-bed machine
-# (knitout_oracle.py) and a replay of k-code beside its Knitout (kcode_check.py).
+# Machine programs of small shapes, limbs, flat pieces and random tubes against two checkers that share no code with Picot: a simulator of a V-bed machine
+# (knitout_oracle.py) and a replay of k-code beside its Knitout (kcode_check.py). Then the table of all shapes.
 # Usage: machine.sh PICOT DIRECTORY; the directory keeps the Python environment. Status 77: no network or no Python.
 set -euo pipefail
 picot=$1 work=$2
@@ -12,13 +12,18 @@ if [ ! -x "$work/env/bin/python" ]; then
 fi
 "$work/env/bin/pip" install -q knitout-interpreter==0.1.8 virtual-knitting-machine==0.0.31 knit-graphs==0.1.4 || exit 77
 cd "$work/out"
-for shape in "$root"/shapes/{ball,cord,capsule,egg,mushroom-stem,elbow}.toml; do
-    name=$(basename "$shape" .toml)
+programs=()
+mkdir -p tubes
+python3 "$here/random_tubes.py" tubes 10
+for shape in "$root"/shapes/{ball,cord,capsule,egg,elbow}.toml "$root"/tests/it/cases/machine/*.txt tubes/*.txt; do
+    name=$(basename "${shape%.*}")
     "$picot" -q build "$shape" --machine swg091n2 -o "$name.k"
     "$picot" -q check "$name.k" --against "$shape"
-    "$work/env/bin/python" "$here/knitout_oracle.py" --strict --quiet "$name.k"
     "$picot" -q build "$shape" --machine kniterate --set no-waste=true -o "$name-kniterate.k"
     "$picot" -q build "$name-kniterate.k" -o "$name.kc"
     "$picot" -q check "$name.kc" --against "$shape"
     python3 "$here/kcode_check.py" "$name.kc" "$name-kniterate.k"
+    programs+=("$name.k")
 done
+"$work/env/bin/python" "$here/knitout_oracle.py" --strict --quiet "${programs[@]}"
+python3 "$here/machine_table.py" "$picot" "$root"/shapes/*.toml

@@ -32,12 +32,15 @@ pub static FIELDS: &[Field] = &[
     field("bed.gauge", "needles per inch"),
     field(
         "bed.half_gauge",
-        "tubes use every second needle, which shaping needs; false: plain tubes on all needles",
+        "true: tubes lie on every second needle, which their transfers need; false: only flat pieces are knit",
     ),
     field("bed.sliders", "true when each needle has a slider that can hold transferred loops"),
     field("carriers.names", "the carriers, front rail first"),
     field("carriers.per_op", "most carriers that one operation may use"),
-    field("carriers.yarn", "the carrier that knits the piece"),
+    field(
+        "carriers.yarn",
+        "the carrier of the first color; the others follow in order, but for those of waste",
+    ),
     field("entry.bring_in", "\"hook\" (inhook, releasehook, outhook) or \"gripper\" (in, out)"),
     field("entry.parking", "side on which carriers wait: \"left\" or \"right\""),
     field("entry.first_direction", "direction of the first pass of a yarn, \"+\" or \"-\""),
@@ -46,10 +49,16 @@ pub static FIELDS: &[Field] = &[
         "needles right of the first stitch that the inserting hook covers until releasehook",
     ),
     field("rack.max", "largest rack either way, in needles"),
-    field("rack.preferred", "largest rack that the lowering plans with, in needles"),
+    field(
+        "rack.preferred",
+        "largest rack with which loops are moved sideways, in needles, as far as limits.link_stretch lets it; at least 2",
+    ),
     field("rack.step", "racks are multiples of this, in needles; the all-needle racks come on top"),
     field("rack.all_needle", "racks at which both beds knit in one pass"),
-    field("limits.loops_per_needle", "most loops that a needle holds; 0: no limit"),
+    field(
+        "limits.loops_per_needle",
+        "most loops that a needle holds; what is lowered stays one below it, but takes 3; 0: no limit",
+    ),
     field("limits.float", "longest float, in needles; 0: no limit"),
     field(
         "limits.link_stretch",
@@ -59,8 +68,14 @@ pub static FIELDS: &[Field] = &[
     field("limits.shapings_per_course", "most increases and decreases of one course; 0: no limit"),
     field("tube.min_loops", "fewest loops of a tube; narrower ones give a warning"),
     field("tube.max_loops", "most loops of a tube"),
-    field("methods.increase", "\"tuck\" (kick-back tuck) or \"split\""),
-    field("methods.transfer", "\"four-pass\" (even, then odd needles) or \"two-pass\""),
+    field(
+        "methods.increase",
+        "\"tuck\" (a tuck against the pass), or \"split\" where the two needles are neighbors",
+    ),
+    field(
+        "methods.transfer",
+        "of k-code: \"four-pass\" (even, then odd needles) or \"two-pass\" (all at once)",
+    ),
     field("stitch_number.default", "stitch size while knitting, 0 to 35"),
     field("stitch_number.xfer", "stitch size while transferring"),
     field("stitch_number.bind_off", "stitch size of the bind-off chain"),

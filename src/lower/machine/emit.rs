@@ -74,6 +74,12 @@ impl Emitter {
         self.push(Instruction::Tuck(direction, needle, carriers));
     }
 
+    /// Knits a needle while its loops move to the facing one.
+    pub(super) fn split(&mut self, direction: Direction, from: Needle, to: Needle, carriers: CarrierSet) {
+        self.rack(0);
+        self.push(Instruction::Split(direction, from, to, carriers));
+    }
+
     /// Transfers to a needle of the other bed, racked as that takes.
     pub(super) fn xfer(&mut self, from: Needle, to: Needle) {
         self.rack(match from.bed {

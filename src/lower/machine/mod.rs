@@ -125,7 +125,11 @@ fn knit_group(
         for (index, piece) in group.iter().enumerate() {
             bench.emitter.remark(title(group, index, pattern));
             let unwrapped = unwrapped.get(&index).unwrap_or(&none);
-            if let Err(reason) = piece::knit(*piece, pattern, &mut bench, options, unwrapped, &mut heard) {
+            // Copies of a part say the same; once is enough.
+            let copy = group.iter().take(index).any(|before| before.part == piece.part);
+            let mut silent = Sink::new();
+            let sink = if copy { &mut silent } else { &mut heard };
+            if let Err(reason) = piece::knit(*piece, pattern, &mut bench, options, unwrapped, sink) {
                 failed = Some((index, reason));
                 break;
             }

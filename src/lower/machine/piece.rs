@@ -4,14 +4,14 @@ use super::begin::{self, Begin};
 use super::bench::Bench;
 use super::bind_off;
 use super::emit::Origin;
-use super::plan::{self, Leg};
+use super::plan::{self, Action, Leg};
 use super::refuse::Reason;
 use super::tube::{ItemId, Stuck, Tube};
 use super::yarns::{Yarns, palette};
 use super::{Options, carrier};
 use crate::diag::{Code as Finding, Diagnostic, Sink};
-use crate::ir::machine::profile::{BringIn, Waste};
-use crate::ir::machine::{Bed, CarrierId, CarrierSet, Instruction, Machine};
+use crate::ir::machine::profile::{BringIn, Increase, Transfer, Waste};
+use crate::ir::machine::{Bed, CarrierId, CarrierSet, Instruction, Machine, Needle};
 use crate::ir::{Direction, Finish, Part, PartId, Pattern};
 use std::collections::{BTreeSet, VecDeque};
 
@@ -177,6 +177,12 @@ impl<'m> Worker<'_, 'm> {
         say("x-xfer-stitch-number", sizes.map(|sizes| u32::from(sizes.xfer)));
         say("x-speed-number", machine.speed.as_ref().and_then(|speed| speed.default));
         say("x-roller-advance", machine.roller.as_ref().map(|roller| roller.default));
+        let style = "x-xfer-style";
+        if machine.methods.transfer == Transfer::TwoPass
+            && machine.extensions.iter().any(|known| known == style)
+        {
+            emitter.extension(format!("{style} two-pass"));
+        }
     }
 
     fn cast_on(&mut self, tube: &mut Tube, closed: bool) {
@@ -373,10 +379,29 @@ impl<'m> Worker<'_, 'm> {
                 group.reverse();
             }
         }
-        for &(id, at) in &tops {
+        let mut split: Vec<(Needle, ItemId, usize)> = Vec::new();
+        let mut order = tops.iter().copied().peekable();
+        while let Some((id, at)) = order.next() {
             self.bench.emitter.origin.stitch = base + at as u32 + 1;
             let color = leg.actions.get(at).map_or(0, |action| action.color);
-            self.yarns.stitch(tube, id, forward, color, &mut self.bench.emitter)?;
+            let second = order.peek().filter(|(_, other)| *other == at).map(|(second, _)| *second);
+            if let Some(second) = second
+                && let Some(park) = self.split(tube, leg.actions.get(at), id, second, forward)
+            {
+                order.next();
+                split.push((park, second, at));
+            } else {
+                self.yarns.stitch(tube, id, forward, color, &mut self.bench.emitter)?;
+            }
+        }
+        if !split.is_empty() {
+            self.yarns.settle(&mut self.bench.emitter);
+        }
+        for (park, second, at) in split {
+            self.bench.emitter.origin.stitch = base + at as u32 + 1;
+            let needle = tube.needle(second);
+            self.bench.emitter.xfer(park, needle);
+            tube.change(second, |item| item.ghost = false);
         }
         self.bench.emitter.origin.stitch = base + leg.actions.len() as u32;
         let tops = tops.into_iter().map(|(id, _)| id);
@@ -386,6 +411,36 @@ impl<'m> Worker<'_, 'm> {
             tops.for_each(|top| tube.ahead.push_front(top));
         }
         Ok(())
+    }
+
+    /// Makes both loops of an increase by a split where the profile asks for it: the new loop stays on the needle, and
+    /// the old one waits on the facing needle until the leg is done. `None` where the two needles are no neighbors or the
+    /// yarn only begins.
+    fn split(
+        &mut self,
+        tube: &mut Tube,
+        action: Option<&Action>,
+        first: ItemId,
+        second: ItemId,
+        forward: bool,
+    ) -> Option<Needle> {
+        let two = action.is_some_and(|action| action.works == 1 && action.makes == 2);
+        let (kept, ghost) = (first, second);
+        let (a, b) = (tube.item(kept), tube.item(ghost));
+        let neighbors = a.bed == b.bed && (a.slot - b.slot).abs() == 1 && !a.ghost && b.ghost;
+        let able = self.machine().methods.increase == Increase::Split && self.machine().performs("split");
+        if !able || !two || !neighbors || !forward {
+            return None;
+        }
+        let color = action.map_or(0, |action| action.color);
+        self.yarns.goes_on_at(tube, kept, color, &mut self.bench.emitter).then(|| {
+            let park = tube.split(kept, forward, &mut self.bench.emitter);
+            tube.change(ghost, |item| {
+                item.loops = a.loops;
+                item.wrap = a.wrap;
+            });
+            park
+        })
     }
 
     fn count_shaping(&mut self) -> Result<(), Reason> {

@@ -32,6 +32,29 @@ impl<'a> Replay<'a> {
         front.chain(back).collect()
     }
 
+    /// The stitch that the split at this place moves to the facing needle.
+    pub(super) fn moved_by_split(&mut self, op: u32) -> Option<LoopId> {
+        self.advance((op as usize).checked_sub(1)?);
+        let Some(&Instruction::Split(_, from, _, _)) = self.code.ops().get(op as usize) else { return None };
+        let stitch = |id: &&LoopId| self.needles.get(**id).is_some_and(|found| found.made != Made::Wrap);
+        self.held.get(&from)?.iter().rfind(stitch).copied()
+    }
+
+    /// Goes on over the transfers that bring the loops of splits to their needles.
+    pub(super) fn settle(&mut self, op: u32, moved: &BTreeSet<LoopId>) {
+        self.advance(op as usize);
+        while let Some(&instruction) = self.code.ops().get(self.at) {
+            let holds =
+                |from| self.held.get(&from).is_some_and(|stack| stack.iter().any(|id| moved.contains(id)));
+            if !matches!(instruction, Instruction::Rack(_))
+                && !matches!(instruction, Instruction::Xfer(from, _) if holds(from))
+            {
+                return;
+            }
+            self.advance(self.at);
+        }
+    }
+
     fn advance(&mut self, op: usize) {
         while self.at <= op
             && let Some(instruction) = self.code.ops().get(self.at)

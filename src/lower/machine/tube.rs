@@ -238,6 +238,18 @@ impl Tube {
         });
     }
 
+    /// Knits an item while its old loops move to the facing needle, which comes back.
+    pub(super) fn split(&mut self, id: ItemId, forward: bool, emitter: &mut Emitter) -> Needle {
+        let needle = self.needle(id);
+        let park = Needle::on(needle.bed.other(), needle.index);
+        emitter.split(self.direction(id, forward), needle, park, self.carriers);
+        self.change(id, |item| {
+            item.loops = 1;
+            item.wrap = None;
+        });
+        park
+    }
+
     /// Lays the yarn over an item without knitting it, which is the wrap of a turn.
     pub(super) fn wrap(
         &mut self,

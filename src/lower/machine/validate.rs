@@ -40,6 +40,7 @@ pub fn validate(
         ends: BTreeMap::new(),
         held: BTreeMap::new(),
         colors: BTreeMap::new(),
+        moved: BTreeSet::new(),
         open: Open::default(),
         round: 0,
         stitch: 0,
@@ -135,6 +136,8 @@ struct Walk<'a> {
     /// Loops set aside, by giving and taking part.
     held: BTreeMap<(PartId, PartId), VecDeque<VecDeque<LoopId>>>,
     colors: BTreeMap<u16, CarrierId>,
+    /// Loops that splits of the row have moved.
+    moved: BTreeSet<LoopId>,
     open: Open,
     round: u32,
     stitch: u32,
@@ -328,6 +331,11 @@ impl Walk<'_> {
             .filter_map(|_| if forward { open.ahead.pop_front() } else { open.behind.pop_back() })
             .collect();
         parents.sort_unstable();
+        if let (2, &[parent]) = (action.makes, parents.as_slice())
+            && let Some(made) = self.split(parent, action)?
+        {
+            return Ok(if forward { vec![made, parent] } else { vec![parent, made] });
+        }
         let made = self.take(usize::from(action.makes));
         let first = made.first().copied();
         if made.len() < usize::from(action.makes) {
@@ -350,6 +358,24 @@ impl Walk<'_> {
         }
         self.all.extend(&made);
         Ok(made)
+    }
+
+    /// An increase made by a split: the new loop, while the old one stays open beside it.
+    fn split(&mut self, parent: LoopId, action: Action) -> Result<Option<LoopId>, Difference> {
+        let Some(&id) = self.stitches.get(self.next).filter(|&&id| self.made(id) == Some(Made::Split)) else {
+            return Ok(None);
+        };
+        self.next += 1;
+        let op = self.needles.get(id).map_or(0, |found| found.op);
+        if self.replay.moved_by_split(op) != Some(parent) {
+            return self.fail("the loop is not split off the loop that the pattern works", Some(id));
+        }
+        if self.program.colors.len() > 1 {
+            self.colored(action.color, &[id])?;
+        }
+        self.all.insert(id);
+        self.moved.insert(parent);
+        Ok(Some(id))
     }
 
     /// Each color has a carrier of its own.
@@ -375,6 +401,10 @@ impl Walk<'_> {
         };
         let set: BTreeSet<LoopId> = expected.iter().copied().collect();
         let op = self.needles.get(last).map_or(0, |found| found.op);
+        let moved = std::mem::take(&mut self.moved);
+        if !moved.is_empty() {
+            self.replay.settle(op, &moved);
+        }
         let mut around = self.replay.around(op, &set);
         if part.flat {
             return around == expected || around.iter().rev().eq(expected.iter());

@@ -109,6 +109,30 @@ impl<'m> Yarns<'m> {
         Ok(())
     }
 
+    /// True where the yarn in use goes on at an item, after it moved to its bed; false where it would have to come in.
+    pub(super) fn goes_on_at(
+        &mut self,
+        tube: &mut Tube,
+        id: ItemId,
+        color: u16,
+        emitter: &mut Emitter,
+    ) -> bool {
+        if color != self.color || !self.last().is_some_and(|last| last.is_some()) {
+            return false;
+        }
+        let needle = tube.needle(id);
+        if self.hook.is_some_and(|(_, bed)| bed != needle.bed) {
+            self.settle(emitter);
+        }
+        // The old loop moves to the other bed, which the hook would be in the way of.
+        if self.hook.is_some() {
+            return false;
+        }
+        tube.set_carriers(CarrierSet::one(self.carrier()));
+        self.stands_at(needle.index);
+        true
+    }
+
     /// Brings the carrier in for an item. Where the course runs against the first direction of a yarn, the yarn is
     /// first laid on that needle, and the hook lets go at once. True when that was the item's loop already.
     fn start(
