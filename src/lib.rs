@@ -54,9 +54,10 @@ use diag::{Code, Diagnostic, Sink, Source, Sources};
 use frontend::crochet::{self, Conventions};
 use frontend::{Input, Reader};
 use generate::capunaman::Baseline;
-use ir::{Finish, Gauge, Pattern, Program};
+use ir::{Finish, Gauge, Graph, Part, PartId, Pattern, Program};
 use metrics::{Measure, Mesh, Sampler};
-use shape::{End, Shape};
+use rayon::prelude::*;
+use shape::{Attachment, End, Joint, Shape, Tube};
 
 /// What the stages before printing may be told.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -135,13 +136,33 @@ pub fn program(shape: &Shape, options: &Options, sink: &mut Sink<'_>) -> Option<
         pattern: Pattern::default(),
         graphs: Vec::new(),
     };
-    if let Some(tube) = shape.tubes.iter().find(|tube| tube.attachment.is_some()) {
-        let message = "branches are not supported yet".to_owned();
-        sink.push(Diagnostic::new(Code::BranchUnsupported, message).in_round(&tube.name, None));
-        return None;
+    for (graph, part) in lay(shape, options, sink)? {
+        program.pattern.parts.push(part);
+        program.graphs.push(graph);
     }
-    for tube in &shape.tubes {
-        sink.stage("generate");
+    sink.stage("join");
+    for (index, tube) in shape.tubes.iter().enumerate() {
+        let Some(Attachment { parent, joint }) = tube.attachment else { continue };
+        let (part, to) = (PartId(index as u32), PartId(parent as u32));
+        match joint {
+            Joint::Surface => lower::join::on_surface(&mut program, part, to, sink)?,
+            Joint::Opening => lower::join::through_slit(&mut program, part, to, sink)?,
+            Joint::Split => {
+                let message = "the last loop of its parent divides, which is not made yet";
+                sink.push(Diagnostic::new(Code::DividesOddly, message).in_round(&tube.name, None));
+                return None;
+            }
+        }
+    }
+    sink.stage("passes");
+    passes::run(&mut program, sink);
+    Some(program)
+}
+
+/// A graph and a part for each tube. Tubes do not see each other, so they are laid in parallel.
+fn lay(shape: &Shape, options: &Options, sink: &mut Sink<'_>) -> Option<Vec<(Graph, Part)>> {
+    sink.stage("generate");
+    let one = |tube: &Tube, sink: &mut Sink<'_>| {
         let mut graph = generate::generate(tube, &shape.gauge, &options.generate, sink)?;
         sink.stage("trace");
         let finish = match tube.end {
@@ -150,12 +171,27 @@ pub fn program(shape: &Shape, options: &Options, sink: &mut Sink<'_>) -> Option<
         };
         let mut part = lower::trace(&tube.name, &graph, finish);
         lower::trim(&mut graph, &mut part);
-        program.pattern.parts.push(part);
-        program.graphs.push(graph);
+        Some((graph, part))
+    };
+    if let [tube] = shape.tubes.as_slice() {
+        return Some(vec![one(tube, sink)?]);
     }
-    sink.stage("passes");
-    passes::run(&mut program, sink);
-    Some(program)
+    let done: Vec<_> = shape
+        .tubes
+        .par_iter()
+        .map(|tube| {
+            let mut findings = Sink::new();
+            (one(tube, &mut findings), findings.take())
+        })
+        .collect();
+    let mut laid = Vec::with_capacity(done.len());
+    for (tube, findings) in done {
+        for finding in findings {
+            sink.push(finding);
+        }
+        laid.push(tube);
+    }
+    laid.into_iter().collect()
 }
 
 /// Measures the graphs of a program against the shape that they were generated from.
@@ -168,16 +204,32 @@ pub fn measure(shape: &Shape, program: &Program) -> Measure {
     sampler.finish()
 }
 
+/// Measures each part by itself, in the order of the tubes.
+pub fn measure_parts(shape: &Shape, program: &Program) -> Vec<Measure> {
+    let parts = shape.tubes.iter().zip(&program.graphs);
+    parts.map(|(tube, graph)| metrics::measure(tube, &shape.gauge, graph)).collect()
+}
+
 /// Lays the [baseline](generate::capunaman) of the paper's tables on each tube of a shape.
 pub fn baseline(shape: &Shape, sink: &mut Sink<'_>) -> Option<Vec<Baseline>> {
     sink.stage("generate");
     shape.tubes.iter().map(|tube| generate::capunaman::capunaman(tube, &shape.gauge, sink)).collect()
 }
 
+/// Measures the baseline net of each tube by itself.
+pub fn measure_baseline_parts(shape: &Shape, nets: &[Baseline]) -> Vec<Measure> {
+    let nets = shape.tubes.iter().zip(nets);
+    nets.map(|(tube, net)| baseline_of(&shape.gauge, [(tube, net)].into_iter())).collect()
+}
+
 /// Measures baseline nets, one for each tube of the shape.
 pub fn measure_baseline(shape: &Shape, nets: &[Baseline]) -> Measure {
-    let mut sampler = Sampler::new(shape.gauge);
-    for (tube, net) in shape.tubes.iter().zip(nets) {
+    baseline_of(&shape.gauge, shape.tubes.iter().zip(nets))
+}
+
+fn baseline_of<'s>(gauge: &Gauge, nets: impl Iterator<Item = (&'s Tube, &'s Baseline)>) -> Measure {
+    let mut sampler = Sampler::new(*gauge);
+    for (tube, net) in nets {
         sampler.add(tube, &Mesh::of_wales(&net.nodes, net.start(), &net.wales));
         let counts = net.counts();
         sampler.note(counts.increases, counts.decreases, counts.crossings);

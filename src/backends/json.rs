@@ -214,24 +214,32 @@ fn stitches(part: &Part, facts: &PartFacts, graph: &Graph, out: &mut impl Write)
     Ok(())
 }
 
-/// Which parts begin on loops of which. Pairs name nodes and are known where there are graphs.
+/// Which parts begin on loops of which, a stretch at a time. Pairs name a node of the part and one of the part that it
+/// grows from, and are known where there are graphs.
 fn joins(program: &Program, out: &mut impl Write) -> io::Result<()> {
     let mut comma = "";
-    for part in &program.pattern.parts {
+    let pairs = crate::ir::joins::pairs(program);
+    for (index, part) in program.pattern.parts.iter().enumerate() {
         let Start::Join { segments } = &part.start else { continue };
+        let pairs = pairs.get(&PartId(index as u32)).map_or(&[][..], Vec::as_slice);
+        let mut node = 0;
         for segment in segments {
+            let first = node;
+            node += segment.loops();
             let (to, kind) = match segment {
                 Segment::Open { part, .. } => (part, "open"),
                 Segment::Held { part, .. } => (part, "held"),
                 Segment::Surface { part, .. } => (part, "surface"),
                 Segment::Chain { .. } => continue,
             };
+            let own = pairs.iter().filter(|pair| (first..node).contains(&pair.node));
             write!(
                 out,
-                "{comma}\n{{\"part\": {}, \"to\": {}, \"kind\": \"{kind}\", \"loops\": {}, \"pairs\": []}}",
+                "{comma}\n{{\"part\": {}, \"to\": {}, \"kind\": \"{kind}\", \"loops\": {}, \"pairs\": {}}}",
                 quoted(&part.name),
                 part_name(program, *to),
-                segment.loops()
+                segment.loops(),
+                List(own.map(|pair| format!("[{}, {}]", pair.node, pair.base)))
             )?;
             comma = ",";
         }

@@ -182,13 +182,16 @@ impl<W: io::Write> Writer<'_, W> {
             Segment::Held { part, loops } => {
                 self.tags.tag("held").text("part", name(self.program, part)).count("loops", loops)
             }
-            Segment::Surface { part, round, first, loops } => self
-                .tags
-                .tag("surface")
-                .text("part", name(self.program, part))
-                .count("round", round)
-                .count("first", first)
-                .count("loops", loops),
+            Segment::Surface { part, round, first, loops, back } => {
+                let tags = self
+                    .tags
+                    .tag("surface")
+                    .text("part", name(self.program, part))
+                    .count("round", round)
+                    .count("first", first)
+                    .count("loops", loops);
+                if back { tags.text("direction", Direction::Back.word()) } else { tags }
+            }
             Segment::Chain { loops } => self.tags.tag("chain").count("loops", loops),
         }
         .empty()

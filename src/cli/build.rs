@@ -213,11 +213,13 @@ pub(crate) fn summary(program: &Verified<'_>) -> String {
 
 /// Rounds of all parts, each part once.
 pub(crate) fn rounds(program: &Program) -> u64 {
-    let of = |part: &Part| {
-        let rows: u64 = part.rows.iter().map(|row| u64::from(row.times)).sum();
-        rows + u64::from(part.first_number()) - 1
-    };
-    program.pattern.parts.iter().map(of).sum()
+    program.pattern.parts.iter().map(rounds_of).sum()
+}
+
+/// Rounds of a part.
+pub(crate) fn rounds_of(part: &Part) -> u64 {
+    let rows: u64 = part.rows.iter().map(|row| u64::from(row.times)).sum();
+    rows + u64::from(part.first_number()) - 1
 }
 
 /// What a person would do now.

@@ -1,7 +1,7 @@
 //! `picot measure`: how close the stitches of an input come to its shape.
 
 use super::args::{Algorithm, Measure as Arguments};
-use super::build::rounds;
+use super::build::{rounds, rounds_of};
 use super::plan::reader_of;
 use super::progress::{Bar, Watch};
 use super::report::{self, Report};
@@ -20,6 +20,8 @@ use std::time::Duration;
 /// What is known of one run of an algorithm.
 pub(crate) struct Measured {
     pub(crate) measure: Measure,
+    /// Name, rounds and measure of each part.
+    pub(crate) parts: Vec<(String, u64, Measure)>,
     pub(crate) rounds: u64,
     pub(crate) readability: Option<Readability>,
     /// The first round that cannot be worked, with 0 for one that is not known.
@@ -79,6 +81,11 @@ pub(crate) fn measure(
             sink.stage("measure");
             Some(Measured {
                 measure: picot::measure(shape, &program),
+                parts: picot::measure_parts(shape, &program)
+                    .into_iter()
+                    .zip(&program.pattern.parts)
+                    .map(|(measure, part)| (part.name.clone(), rounds_of(part), measure))
+                    .collect(),
                 rounds: rounds(&program),
                 readability: Some(Readability::of(&program.pattern, &program.graphs)),
                 unworkable: (!workable).then(|| u64::from(round.unwrap_or(0))),
@@ -89,12 +96,22 @@ pub(crate) fn measure(
             sink.stage("measure");
             Some(Measured {
                 measure: picot::measure_baseline(shape, &nets),
-                rounds: nets.iter().map(|net| net.rows.len().saturating_sub(2) as u64).sum(),
+                parts: picot::measure_baseline_parts(shape, &nets)
+                    .into_iter()
+                    .zip(shape.tubes.iter().zip(&nets))
+                    .map(|(measure, (tube, net))| (tube.name.clone(), baseline_rounds(net), measure))
+                    .collect(),
+                rounds: nets.iter().map(baseline_rounds).sum(),
                 readability: None,
                 unworkable: nets.iter().find_map(Baseline::unworkable_row).map(|row| row as u64),
             })
         }
     }
+}
+
+/// Rows of a baseline net that are worked into another one.
+fn baseline_rounds(net: &Baseline) -> u64 {
+    net.rows.len().saturating_sub(2) as u64
 }
 
 pub(crate) fn name(algorithm: Algorithm) -> &'static str {
@@ -134,6 +151,17 @@ pub(crate) fn facts(measured: &Measured) -> Result<Value, Failure> {
     if let Some(round) = measured.unworkable {
         value["unworkable_round"] = round.into();
     }
+    let mut parts = Vec::new();
+    for (name, rounds, measure) in &measured.parts {
+        let mut part = json!({ "name": name, "rounds": rounds });
+        if let (Value::Object(part), Value::Object(facts)) =
+            (&mut part, serde_json::to_value(measure).map_err(wrong)?)
+        {
+            part.extend(facts);
+        }
+        parts.push(part);
+    }
+    value["parts"] = parts.into();
     if let Some(readability) = &measured.readability {
         value["readability"] = serde_json::to_value(readability).map_err(wrong)?;
     }
@@ -191,6 +219,24 @@ fn table(
     line("  steps at short rows", &skew.step);
     line("  turns", &skew.turn);
     line("skew as in the paper", &skew.paper);
+    if measured.parts.len() > 1 {
+        let _ = writeln!(
+            text,
+            "\n{:<28}{:>8}{:>8}{:>8}{:>8}{:>8}",
+            "part by part", "rounds", "stitches", "length", "skew", "covered"
+        );
+        for (name, rounds, part) in &measured.parts {
+            let name: String = name.chars().take(27).collect();
+            let _ = writeln!(
+                text,
+                "{name:<28}{rounds:>8}{:>8}{:>8.2}{:>8.2}{:>8.1}",
+                part.stitches,
+                100.0 * part.length_error.chord.mean_abs,
+                100.0 * part.skew.all.mean,
+                100.0 * part.coverage
+            );
+        }
+    }
     let _ = writeln!(
         text,
         "\ncoverage  {:.1} % by area, {:.1} % by count",

@@ -31,8 +31,9 @@ pub(super) fn ring_size(surface: &dyn ParametricSurface, rows: &Rows, gauge: &Ga
     if count.abs_diff(6) <= 1 { 6 } else { count }
 }
 
-/// Places of the first row, at equal arc length along the first turn of the helix (paper, section 3.2).
-pub(super) fn even_places(surface: &dyn ParametricSurface, rows: &Rows, width: f64) -> Vec<f64> {
+/// Places of the first row, at equal arc length along the first turn of the helix (paper, section 3.2); their number
+/// is a multiple of `step`.
+pub(super) fn even_places(surface: &dyn ParametricSurface, rows: &Rows, width: f64, step: u32) -> Vec<f64> {
     const SAMPLES: usize = 720;
     let mut lengths = Vec::with_capacity(SAMPLES + 1);
     lengths.push(0.0);
@@ -44,7 +45,8 @@ pub(super) fn even_places(surface: &dyn ParametricSurface, rows: &Rows, width: f
         before = point;
     }
     let total = lengths[SAMPLES];
-    let count = (total / width).round().max(LEAST_AROUND) as usize;
+    let step = f64::from(step.max(1));
+    let count = ((total / (width * step)).round() * step).max(LEAST_AROUND) as usize;
     let mut j = 0;
     (0..count)
         .map(|i| {

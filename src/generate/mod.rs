@@ -23,7 +23,7 @@ pub use options::{Options, Preset};
 
 use crate::diag::{Code, Diagnostic, Sink};
 use crate::ir::{Gauge, Graph, MAX_LOOPS};
-use crate::shape::{End, ParametricSurface, Tube, area, is_revolution};
+use crate::shape::{Attachment, End, Joint, ParametricSurface, Tube, area, is_revolution};
 use glam::DVec3;
 use relax::{Effort, Ends, Mark, Relaxer};
 use rows::Rows;
@@ -51,7 +51,13 @@ pub fn generate(tube: &Tube, gauge: &Gauge, options: &Options, sink: &mut Sink<'
         return fail(sink, Code::OptionOutOfRange, message, &format!("give it a value {right}"));
     }
     let options = &options.resolved();
-    let turned = Turned::to_slowest_side(&*tube.surface);
+    // A branch in a slit begins at an end of it, with as many loops below as above.
+    let slit = matches!(tube.attachment, Some(Attachment { joint: Joint::Opening, .. }));
+    let turned = if slit {
+        Turned { surface: &*tube.surface, by: 0.0 }
+    } else {
+        Turned::to_slowest_side(&*tube.surface)
+    };
     let surface: &dyn ParametricSurface = &turned;
     let ends = [tube.start, tube.end];
     let expected = area(surface, 10, 16) / (gauge.width * gauge.height);
@@ -75,12 +81,14 @@ pub fn generate(tube: &Tube, gauge: &Gauge, options: &Options, sink: &mut Sink<'
     };
     sink.stage("stitches");
     let most = (3.0 * expected) as usize + 10_000;
-    let laid = Ground::new(surface, ends, &rows, gauge, options).lay_evenly(sink);
+    let laid = Ground { slit, ..Ground::new(surface, ends, &rows, gauge, options) }.lay_evenly(sink);
     let laid = laid.map(|(sheet, start)| Laid { sheet, start, turn: turned.by });
     let Some(Laid { sheet, start, turn }) = laid.or_else(|| {
         tries::best(options, expected, |options, turn| {
+            let turn = if slit { 0.0 } else { turn };
             let turned = Turned { surface: turned.surface, by: turned.by + turn };
-            let (sheet, start) = Ground::new(&turned, ends, &rows, gauge, options).weave(most, sink)?;
+            let ground = Ground { slit, ..Ground::new(&turned, ends, &rows, gauge, options) };
+            let (sheet, start) = ground.weave(most, sink)?;
             Some(Laid { sheet, start, turn: turned.by })
         })
     }) else {
@@ -117,6 +125,8 @@ struct Ground<'s> {
     poles: [Option<DVec3>; 2],
     /// Least and greatest u of a node.
     range: [f64; 2],
+    /// The first row is worked into a slit.
+    slit: bool,
 }
 
 impl<'s> Ground<'s> {
@@ -136,13 +146,13 @@ impl<'s> Ground<'s> {
             limit(ends[0], OVERHANG[0], rows.at(0.0), 0.0),
             limit(ends[1], OVERHANG[1], rows.at(rows.count), 1.0),
         ];
-        Self { surface, rows, gauge, options, poles, range }
+        Self { surface, rows, gauge, options, poles, range, slit: false }
     }
 
     /// Even repeats on a surface of revolution, settled; with the stitches of the first row. `None` elsewhere.
     fn lay_evenly(&self, sink: &Sink<'_>) -> Option<(Sheet, usize)> {
         let Self { surface, rows, options, .. } = *self;
-        if !options.symmetric || !is_revolution(surface) {
+        if !options.symmetric || self.slit || !is_revolution(surface) {
             return None;
         }
         let rounds = rows.count as u32;
@@ -181,7 +191,8 @@ impl<'s> Ground<'s> {
             let ring = first_row::ring_size(surface, rows, self.gauge);
             first_row::lay(surface, &mut sheet, first_row::centered_places(ring), rows);
         } else {
-            let places = first_row::even_places(surface, rows, self.gauge.width);
+            let places =
+                first_row::even_places(surface, rows, self.gauge.width, if self.slit { 2 } else { 1 });
             first_row::lay(surface, &mut sheet, places.into_iter(), rows);
         }
         let start = sheet.len();

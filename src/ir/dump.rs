@@ -31,8 +31,9 @@ fn part_lines(index: usize, part: &Part, text: &mut String) -> fmt::Result {
                 match segment {
                     Segment::Open { part, loops } => write!(text, " open {loops} of {}", part.0)?,
                     Segment::Held { part, loops } => write!(text, " held {loops} of {}", part.0)?,
-                    Segment::Surface { part, round, first, loops } => {
-                        write!(text, " surface {loops} of {} round {round} from {first}", part.0)?;
+                    Segment::Surface { part, round, first, loops, back } => {
+                        let way = if *back { "down to" } else { "from" };
+                        write!(text, " surface {loops} of {} round {round} {way} {first}", part.0)?;
                     }
                     Segment::Chain { loops } => write!(text, " chain {loops}")?,
                 }

@@ -17,6 +17,7 @@ pub mod dialect;
 pub mod dump;
 pub mod exchange;
 pub mod graph;
+pub mod joins;
 pub mod machine;
 pub mod pattern;
 pub mod stitch;

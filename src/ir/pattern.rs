@@ -95,10 +95,12 @@ pub enum Segment {
         part: PartId,
         /// Number of the round whose stitches are worked around.
         round: u32,
-        /// First stitch of that round, from 1.
+        /// First stitch of that round, from 1; the least of them whatever the direction.
         first: u32,
         /// Loops picked up.
         loops: u32,
+        /// Picked up against the direction of the round: the last stitch first.
+        back: bool,
     },
     /// Chains.
     Chain {
@@ -108,6 +110,14 @@ pub enum Segment {
 }
 
 impl Segment {
+    /// The part that the loops come from; none for chains.
+    pub fn part(self) -> Option<PartId> {
+        match self {
+            Self::Open { part, .. } | Self::Held { part, .. } | Self::Surface { part, .. } => Some(part),
+            Self::Chain { .. } => None,
+        }
+    }
+
     /// Loops of this stretch.
     pub fn loops(self) -> u32 {
         match self {

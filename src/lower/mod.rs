@@ -1,5 +1,7 @@
 //! From one level of the intermediate representation to the next.
 
+mod couple;
+pub mod join;
 pub mod machine;
 pub mod trace;
 pub mod trim;

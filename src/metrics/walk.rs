@@ -106,6 +106,10 @@ impl Walk<'_, '_> {
                 self.mesh.fills.push([made, lower, middle, upper]);
             }
         }
+        if let (true, Some(pass)) = (base.is_empty(), self.passes.last_mut()) {
+            // Chains over a slit stand on nothing, and no tile spans them.
+            pass.last = None;
+        }
         for &from in base {
             for &to in top {
                 self.wale(from, to, Direction::Forward);

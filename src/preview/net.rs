@@ -209,13 +209,17 @@ impl Walk {
                         found.extend(held.drain(..left).map(|id| (piece as u32, id)));
                     }
                 }
-                Segment::Surface { part, round, first, loops } => {
+                Segment::Surface { part, round, first, loops, back } => {
                     if let Some((piece, net)) = nets.iter().enumerate().find(|(_, net)| net.part == part) {
                         let made = net.worked.iter().filter(|step| step.round == round);
                         let tops = made.flat_map(|step| step.top..step.top.saturating_add(step.makes));
                         let tops = tops.filter(|id| *id < net.loops);
                         let tops = tops.skip(first.saturating_sub(1) as usize).take(loops as usize);
+                        let begin = found.len();
                         found.extend(tops.map(|id| (piece as u32, id)));
+                        if back && let Some(new) = found.get_mut(begin..) {
+                            new.reverse();
+                        }
                     }
                 }
             }

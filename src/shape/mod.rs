@@ -2,6 +2,7 @@
 
 pub mod analytic;
 pub mod bezier;
+pub mod branch;
 mod fold;
 pub mod frame;
 pub mod loops;
@@ -9,6 +10,7 @@ pub mod measure;
 mod meridian;
 mod profile;
 mod smooth;
+pub(crate) mod solid;
 pub mod spec;
 pub mod sweep;
 

@@ -242,7 +242,7 @@ fn colors_have_a_carrier_each() {
 #[test]
 fn loops_of_finished_fabric_are_refused_or_sewn() {
     let body = part("body", Start::Ring { loops: 20 }, vec![vec![sc(20)], vec![sc(20)]], Finish::Open);
-    let surface = Segment::Surface { part: PartId(0), round: 2, first: 3, loops: 8 };
+    let surface = Segment::Surface { part: PartId(0), round: 2, first: 3, loops: 8, back: false };
     let arm = part("arm", join(vec![surface]), vec![vec![sc(8)]], Finish::Open);
     let program = parts(vec![body, arm]);
     for machine in machines() {

@@ -2,6 +2,7 @@
 
 mod arbitrary;
 mod baseline;
+mod branches;
 mod charts;
 mod cli;
 mod corpus;

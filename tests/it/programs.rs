@@ -140,7 +140,8 @@ impl Grower {
             } else if let Some((round, loops)) = first_round(&parts[from as usize]) {
                 let first = 1 + self.below(loops);
                 let loops = 1 + self.below(loops - first + 1);
-                segments.push(Segment::Surface { part: PartId(from), round, first, loops });
+                let back = self.below(2) == 1;
+                segments.push(Segment::Surface { part: PartId(from), round, first, loops, back });
             }
             if self.below(2) == 1 {
                 segments.push(Segment::Chain { loops });

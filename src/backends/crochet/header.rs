@@ -48,6 +48,12 @@ pub(super) fn write(options: &Crochet, program: &Verified<'_>, text: &mut Text<'
     for note in notes(&uses, program, prose) {
         text.prose(note)?;
     }
+    if uses.held && options.language == Language::English {
+        text.prose(
+            "Where stitches are held for another part, skip them and leave them open, on a stitch holder or a thread. Chains \
+             that count as stitches go over the gap; the next round is worked into them.",
+        )?;
+    }
     if program.pattern.parts.len() > 1 {
         let list = program.pattern.parts.iter().map(|part| {
             let name = name(&part.name, options.language);

@@ -174,46 +174,44 @@ fn head(program: &Program, part: &Part, language: Language) -> String {
     line.push(':');
     let Start::Join { segments } = &part.start else { return line };
     let of = |id: &PartId| program.pattern.parts.get(id.0 as usize);
-    let from = |segment: &Segment| match segment {
-        Segment::Held { part, .. } | Segment::Surface { part, .. } => of(part),
-        Segment::Open { .. } | Segment::Chain { .. } => None,
-    };
-    if let Some(source) = segments.first().and_then(from) {
-        let mut held = program
-            .pattern
-            .parts
-            .iter()
-            .position(|other| std::ptr::eq(other, part))
-            .map_or_else(Vec::new, |own| holds(source, PartId(own as u32)));
+    if let Some(source) = source(segments).and_then(|id| of(&id)) {
+        let own = program.pattern.parts.iter().position(|other| std::ptr::eq(other, part));
+        let mut held = own.map_or_else(Vec::new, |own| holds(source, PartId(own as u32)));
         let [held_word, around] = forms.taken;
-        let surface = segments.iter().any(|segment| matches!(segment, Segment::Surface { .. }));
-        let how = if surface { around } else { held_word };
-        held.reverse();
-        let places = segments.iter().filter_map(|segment| match segment {
-            Segment::Held { .. } => held.pop(),
-            Segment::Surface { round, first, loops, .. } => {
-                Some((*round, *first, first.saturating_add(loops.saturating_sub(1))))
-            }
-            Segment::Open { .. } | Segment::Chain { .. } => None,
-        });
-        let places: Vec<(u32, u32, u32)> = places.collect();
         let (from, source) = (forms.origin[1], name(&source.name, language));
-        if places.iter().any(|(_, first, _)| *first == 0) {
+        let _ = write!(line, " {from} {source}");
+        if held.iter().any(|(_, first, _)| *first == 0) {
             // Loops of a short row are of no round below.
-            let _ = write!(line, " {from} {source} {how}");
+            let _ = write!(line, " {held_word}");
             return line;
         }
+        held.reverse();
         let noun =
             if language == Language::German { forms.rnd[0].to_owned() } else { forms.rnd[0].to_lowercase() };
         let [one, several] = forms.st;
-        let places: Vec<String> = places
-            .into_iter()
-            .map(|(round, first, last)| match last {
-                last if last == first => format!("{noun} {round} {one} {first}"),
-                last => format!("{noun} {round} {several} {first}-{last}"),
-            })
-            .collect();
-        let _ = write!(line, " {from} {source} {} {how}", places.join(", "));
+        let mut before = None;
+        for segment in segments {
+            let (how, spot) = match segment {
+                Segment::Surface { round, first, loops, back, .. } => {
+                    let last = first.saturating_add(loops.saturating_sub(1));
+                    (around, Some(if *back { (*round, last, *first) } else { (*round, *first, last) }))
+                }
+                Segment::Held { .. } => (held_word, held.pop()),
+                Segment::Open { .. } | Segment::Chain { .. } => continue,
+            };
+            let Some((round, first, last)) = spot else { continue };
+            if let Some(before) = before.replace(how) {
+                if before != how {
+                    let _ = write!(line, " {before}");
+                }
+                line.push(',');
+            }
+            let _ = match last {
+                last if last == first => write!(line, " {noun} {round} {one} {first}"),
+                last => write!(line, " {noun} {round} {several} {first}-{last}"),
+            };
+        }
+        let _ = write!(line, " {}", before.unwrap_or_default());
         return line;
     }
     // The chain between two parts is worked on both sides, so its second side is not written.
@@ -236,6 +234,16 @@ fn head(program: &Program, part: &Part, language: Language) -> String {
     });
     let _ = write!(line, " {} {}", forms.origin[0], pieces.chain(end).collect::<Vec<_>>().join(" + "));
     line
+}
+
+/// The part that a start picks its loops up from, held or around stitches, when there is one such part and nothing else.
+fn source(segments: &[Segment]) -> Option<PartId> {
+    let picked = |segment: &Segment| match segment {
+        Segment::Held { part, .. } | Segment::Surface { part, .. } => Some(*part),
+        Segment::Open { .. } | Segment::Chain { .. } => None,
+    };
+    let first = segments.first().and_then(picked)?;
+    segments.iter().all(|segment| picked(segment) == Some(first)).then_some(first)
 }
 
 /// Where a part holds loops for another: the round below, first and last of its loops.
@@ -273,7 +281,8 @@ fn start(part: &Part, words: &Words<'_>, text: &mut Text<'_>) -> io::Result<()> 
     let slip = words.base(Kind::SlSt);
     match part.start {
         // The first row says what goes into the ring.
-        Start::Ring { loops: 0 } | Start::Chain { loops: 0, joined: false } | Start::Join { .. } => Ok(()),
+        Start::Ring { loops: 0 } | Start::Chain { loops: 0, joined: false } => Ok(()),
+        Start::Join { ref segments } => pick_up(words, segments, text),
         Start::Ring { loops } => {
             let space = if forms.glued { "" } else { " " };
             let stitch = format!("{loops}{space}{}", words.base(Kind::Sc));
@@ -290,6 +299,30 @@ fn start(part: &Part, words: &Words<'_>, text: &mut Text<'_>) -> io::Result<()> 
             text.line(&fill(forms.foundation, &[("n", &loops.to_string())]))
         }
     }
+}
+
+/// Says how the first loops of a part are picked up.
+fn pick_up(words: &Words<'_>, segments: &[Segment], text: &mut Text<'_>) -> io::Result<()> {
+    if words.language != Language::English {
+        return Ok(());
+    }
+    let held = segments.iter().any(|segment| matches!(segment, Segment::Held { .. }));
+    let around = segments.iter().any(|segment| matches!(segment, Segment::Surface { .. }));
+    let source = source(segments).and_then(|id| words.program.pattern.parts.get(id.0 as usize));
+    let Some(source) = source.map(|part| name(&part.name, words.language)) else { return Ok(()) };
+    text.prose(&if held && around {
+        format!(
+            "Join the yarn at the first held stitch of {source}. Round 1 goes into the held stitches, then into the other \
+             side of the chains above them, back to where it began."
+        )
+    } else if held {
+        format!("Join the yarn at the first held stitch of {source}. Round 1 goes into the held stitches.")
+    } else {
+        format!(
+            "Join the yarn to the outside of {source}. Work round 1 around the posts of the stitches named, in this order, \
+             which leads once around; a stitch that is named twice gets two. There is nothing to sew."
+        )
+    })
 }
 
 /// The row before which a closed piece is stuffed: the first behind the widest with fewer than 12 stitches or less than
@@ -339,6 +372,7 @@ pub(super) struct Uses {
     pub(super) decrease: bool,
     pub(super) short_rows: bool,
     pub(super) left: bool,
+    pub(super) held: bool,
     pub(super) repeats: bool,
     pub(super) special: Vec<(Kind, u16, u16)>,
 }
@@ -394,7 +428,10 @@ impl Uses {
                 }
                 Op::Turn(_) => self.short_rows = true,
                 Op::Leave { .. } => self.left |= !place.last,
-                Op::Hold { .. } => place.worked = true,
+                Op::Hold { .. } => {
+                    place.worked = true;
+                    self.held = true;
+                }
                 Op::Color(_) => {}
             }
         }

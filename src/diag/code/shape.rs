@@ -24,6 +24,21 @@ TooFewRows = "E1302", "too few rows";
 /// Wrong: a tube of radius 3 around a bend of radius 1.
 /// Right: a wider bend, or a thinner tube.
 SurfaceBroken = "E1303", "the surface cannot be covered";
+/// There are no stitches where a branch is joined.
+///
+/// Each first loop of a branch is worked into the nearest stitch of its parent; for a slit, a run of stitches of one
+/// round is held. Very near to an end, or where stitches are large against the branch, there may be none.
+///
+/// Wrong: an arm of four stitches around that leaves one row below the top of its trunk
+/// Right: the arm a few rows lower, or a smaller stitch
+JoinMissesStitches = "E1304", "no stitches to join a branch to";
+/// A part divides into others in a way that is not made.
+///
+/// The last loop of a part can divide among two others, as a pair of trousers does.
+///
+/// Wrong: a palm that ends where four fingers begin
+/// Right: fingers that leave the side of the palm, or a palm that divides twice in turn
+DividesOddly = "E1305", "a part divides in a way that is not made";
 /// The file is not TOML.
 ///
 /// Shape files are written in TOML: `key = value` lines under `[table]` headers, texts in quotes, lists in brackets.
@@ -108,14 +123,29 @@ CurveDegree = "E1011", "a curve segment has 2 to 4 points";
 /// Wrong: `unit = "cm"` and further down `unit = "mm"`
 /// Right: one of the two.
 DuplicateKey = "E1012", "a key is given twice";
-/// Branches are not made yet.
+/// A branch does not begin where it says.
 ///
-/// The keys of `[[branch]]` are read and checked, but no pattern comes of them. Until it does, make the branch a
-/// shape of its own and sew it on, as most toys are made.
+/// `from` is a place on the curve of the parent, 0 at its start and 1 at its end, and the curve of the branch begins
+/// there, in the coordinates of the file. It may begin on the parent's curve or anywhere up to its surface; what lies
+/// inside of the parent is cut off. A branch begins on its parent, so it does not start closed.
 ///
-/// Wrong: `[[branch]]` with `name = "arm"` in `bear.toml`
-/// Right: a file `arm.toml` with the branch as its `[trunk]`
-BranchUnsupported = "E1013", "branches are not supported yet";
+/// Wrong: `from = 12` or, on a trunk from `[0, 0, 0]` to `[0, 0, 10]`, `from = 0.5` with `curve = [[0, 0, 0], [4, 0, 0]]`
+/// Right: `from = 0.5` with `curve = [[0, 0, 5], [4, 0, 5]]`
+BranchStart = "E1020", "a branch does not begin where it says";
+/// A branch names a part to grow from that is not there, or that grows from the branch itself.
+///
+/// `on` names another branch. Without it a branch grows from the trunk.
+///
+/// Wrong: `name = "thumb"` with `on = "hnad"`
+/// Right: `on = "hand"`, with a `[[branch]]` that has `name = "hand"`
+NoParent = "E1021", "no part to grow from";
+/// Two parts have one name.
+///
+/// Names are told apart without regard to capitals, and the name of the trunk is `trunk`.
+///
+/// Wrong: two branches with `name = "leg"`
+/// Right: `name = "left leg"` and `name = "right leg"`
+PartNameTwice = "E1022", "two parts have one name";
 /// Meshes are not read yet.
 ///
 /// The keys of `[mesh]` are read and checked, but no pattern comes of them. Describe the shape by a curve and
@@ -220,6 +250,28 @@ CurveTooTight = "E1109", "the curve is too tight for the tube";
 /// Wrong: a curve that closes a circle, with ends inside one another
 /// Right: a horseshoe with room between its ends.
 TubeCrossesItself = "E1110", "the tube runs through itself";
+/// A branch does not touch the part that it grows from, or does not come out of it.
+///
+/// The tube of a branch begins inside of its parent or on its surface, and leaves it on all sides.
+///
+/// Wrong: on a trunk of radius 2 along z, a branch with `curve = [[3, 0, 5], [6, 0, 5]]`, or one from `[0, 0, 5]` to `[1, 0, 5]`
+/// Right: `curve = [[0, 0, 5], [6, 0, 5]]`
+BranchApart = "E1114", "a branch does not touch its parent";
+/// A branch does not come out of its parent on all sides: it is as wide as the parent, or too far to one side of it, or
+/// at an open end.
+///
+/// The loop in which the two meet must lie on the parent's surface.
+///
+/// Wrong: a trunk of radius 2 with a branch across it of radius 2.5
+/// Right: a branch of radius 1.9 or less
+BranchTooWide = "E1115", "a branch does not fit on its parent";
+/// Two tubes of a shape run through each other.
+///
+/// A branch meets its parent once, where it leaves it, and other parts nowhere.
+///
+/// Wrong: two arms of radius 1 that leave at 0.5 and 0.55 of a trunk of 10 cm on the same side
+/// Right: the same arms on opposite sides, or at 0.3 and 0.7
+TubesCross = "E1116", "two tubes run through each other";
 /// The tube is thinner than four stitches around.
 ///
 /// Fewer than four stitches cannot be worked in the round. Closed ends may shrink to a point, of course.

@@ -145,17 +145,22 @@ impl Printer<'_> {
     fn origin(&self, origin: &Origin, out: &mut String) {
         match origin {
             Origin::Own => {}
-            Origin::From { name, spots, held } => {
+            Origin::From { name, spots } => {
                 out.push_str(" from ");
                 self.folded(*name, out);
+                let mut kind = None;
+                let word = |held: bool| if held { " held" } else { " surface" };
                 for (index, spot) in spots.iter().enumerate() {
+                    if let Some(before) = kind.replace(spot.held).filter(|before| *before != spot.held) {
+                        out.push_str(word(before));
+                    }
                     out.push_str(if index > 0 { "," } else { "" });
                     let _ = write!(out, " rnd {} sts {}", spot.round.value, spot.first.value);
                     if spot.last.value != spot.first.value {
                         let _ = write!(out, "-{}", spot.last.value);
                     }
                 }
-                out.push_str(if *held { " held" } else { " surface" });
+                out.push_str(kind.map_or(" held", word));
             }
             Origin::Join { pieces } => {
                 out.push_str(" join ");

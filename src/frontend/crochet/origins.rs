@@ -49,7 +49,7 @@ impl Checker<'_> {
         let segments = match &head.origin {
             Origin::Own => return,
             Origin::Join { pieces } => self.join(pieces, id),
-            Origin::From { name, spots, held } => self.from(*name, spots, *held, id),
+            Origin::From { name, spots } => self.from(*name, spots, id),
         };
         let loops: i64 = segments.iter().map(|(_, segment)| i64::from(segment.loops())).sum();
         state.have = if segments.is_empty() { None } else { Some(loops) };
@@ -91,13 +91,7 @@ impl Checker<'_> {
         segments
     }
 
-    fn from(
-        &mut self,
-        name: At,
-        spots: &[super::syntax::Spot],
-        held: bool,
-        id: PartId,
-    ) -> Vec<(String, Segment)> {
+    fn from(&mut self, name: At, spots: &[super::syntax::Spot], id: PartId) -> Vec<(String, Segment)> {
         let Some((part, name)) = self.earlier(name, id) else { return Vec::new() };
         let mut segments = Vec::new();
         if spots.is_empty() {
@@ -106,7 +100,9 @@ impl Checker<'_> {
             segments.extend(all.map(|held| (name.clone(), Segment::Held { part, loops: held.loops })));
         }
         for spot in spots {
-            let loops = (spot.last.value.saturating_sub(spot.first.value)).saturating_add(1);
+            let back = spot.last.value < spot.first.value;
+            let (low, high) = (spot.first.value.min(spot.last.value), spot.first.value.max(spot.last.value));
+            let loops = (high - low).saturating_add(1);
             let made = self.made.get(part.0 as usize).and_then(|rounds| {
                 rounds
                     .iter()
@@ -118,15 +114,12 @@ impl Checker<'_> {
                 self.say(Diagnostic::new(Code::NoSuchPart, message), spot.round.at, "");
                 continue;
             };
-            if spot.first.value == 0
-                || spot.last.value < spot.first.value
-                || i64::from(spot.last.value) > made
-            {
+            if low == 0 || i64::from(high) > made {
                 let message = format!("round {} of `{name}` has {made} stitches", spot.round.value);
                 self.say(Diagnostic::new(Code::JoinLoops, message), spot.first.at.to(spot.last.at), "");
                 continue;
             }
-            if held {
+            if spot.held {
                 let fits = self.held.iter().any(|held| {
                     held.from == part
                         && held.by == id
@@ -154,8 +147,8 @@ impl Checker<'_> {
                 }
                 segments.push((name.clone(), Segment::Held { part, loops }));
             } else {
-                let (round, first) = (spot.round.value, spot.first.value);
-                segments.push((name.clone(), Segment::Surface { part, round, first, loops }));
+                let round = spot.round.value;
+                segments.push((name.clone(), Segment::Surface { part, round, first: low, loops, back }));
             }
         }
         segments
@@ -179,7 +172,9 @@ impl Checker<'_> {
     pub(super) fn check_held(&mut self, planned: &[Part<'_>]) {
         for held in self.held.clone() {
             let Some(part) = planned.get(held.by.0 as usize) else { continue };
-            let takes = part.head.is_some_and(|head| matches!(&head.origin, Origin::From { held: true, .. }));
+            let takes = part.head.is_some_and(
+                |head| matches!(&head.origin, Origin::From { spots, .. } if spots.is_empty() || spots.iter().any(|spot| spot.held)),
+            );
             if !takes {
                 let message =
                     format!("{} loops are held for `{}`, which does not take them", held.loops, part.name);

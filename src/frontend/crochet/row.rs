@@ -413,20 +413,35 @@ pub(crate) fn part(input: Tokens<'_>) -> Res<'_, PartHead> {
 fn from(input: Tokens<'_>) -> Res<'_, Origin> {
     let (rest, name) = name(input.skip(1))?;
     if rest.key(0) == Some(Key::Held) {
-        return Ok((rest.skip(1), Origin::From { name, spots: Vec::new(), held: true }));
+        return Ok((rest.skip(1), Origin::From { name, spots: Vec::new() }));
     }
-    let (mut rest, first) = spot(rest)?;
+    let (mut rest, mut spots) = stretch(rest)?;
+    while matches!(rest.key(0), Some(Key::Comma | Key::And)) {
+        let (after, mut more) = stretch(rest.skip(1))?;
+        spots.append(&mut more);
+        rest = after;
+    }
+    Ok((rest, Origin::From { name, spots }))
+}
+
+/// `rnd 2 sts 6-13, rnd 3 st 4 held`.
+fn stretch(input: Tokens<'_>) -> Res<'_, Vec<Spot>> {
+    let (mut rest, first) = spot(input)?;
     let mut spots = vec![first];
     while matches!(rest.key(0), Some(Key::Comma | Key::And)) {
         let (after, next) = spot(rest.skip(1))?;
         spots.push(next);
         rest = after;
     }
-    match rest.key(0) {
-        Some(Key::Held) => Ok((rest.skip(1), Origin::From { name, spots, held: true })),
-        Some(Key::Surface) => Ok((rest.skip(1), Origin::From { name, spots, held: false })),
-        _ => rest.fail("`held` or `surface`"),
+    let held = match rest.key(0) {
+        Some(Key::Held) => true,
+        Some(Key::Surface) => false,
+        _ => return rest.fail("`held` or `surface`"),
+    };
+    for spot in &mut spots {
+        spot.held = held;
     }
+    Ok((rest.skip(1), spots))
 }
 
 /// `rnd 2 sts 6-13`.
@@ -436,7 +451,7 @@ fn spot(input: Tokens<'_>) -> Res<'_, Spot> {
     let (rest, _) = key(Key::St)(rest)?;
     let (rest, first) = int(rest)?;
     let (rest, last) = opt(preceded(any_key(&[Key::Hyphen, Key::To, Key::Dash]), int)).parse(rest)?;
-    Ok((rest, Spot { round, first, last: last.unwrap_or(first) }))
+    Ok((rest, Spot { round, first, last: last.unwrap_or(first), held: false }))
 }
 
 fn piece(input: Tokens<'_>) -> Res<'_, Piece> {

@@ -90,7 +90,6 @@ pub(crate) enum Origin {
     From {
         name: At,
         spots: Vec<Spot>,
-        held: bool,
     },
     /// `join Leg + ch 3 + Leg`.
     Join {
@@ -103,7 +102,10 @@ pub(crate) enum Origin {
 pub(crate) struct Spot {
     pub round: Num,
     pub first: Num,
+    /// Less than `first` where they are taken against the direction of the round.
     pub last: Num,
+    /// Set aside by a `hold`; else worked around as they stand.
+    pub held: bool,
 }
 
 /// One piece of a join.

@@ -3,6 +3,7 @@
 //! The keys are described in `grammar/shape.md`. Lengths are converted to mm here, once. Several faults of a file are
 //! reported in one run, in the order of the file, each on the key or the value that is at fault.
 
+mod branch;
 mod curve;
 mod fit;
 mod gauge;
@@ -13,7 +14,7 @@ mod walk;
 
 use super::{Input, Reader};
 use crate::diag::{Code, Diagnostic, Sink, Source, Sources, Span};
-use crate::shape::{Shape, Tube};
+use crate::shape::Shape;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeTable;
@@ -30,8 +31,6 @@ pub(super) const READER: Reader = Reader {
 
 /// Faults of the TOML itself that are looked at.
 const MOST_SYNTAX_ERRORS: usize = 32;
-/// Most branches of one file.
-const MOST_BRANCHES: usize = 1000;
 /// Most characters of a name.
 const LONGEST_NAME: usize = 200;
 
@@ -137,19 +136,14 @@ fn document_of(walk: &mut Walk<'_>, document: &Spanned<DeTable<'_>>, file: &str)
         }
         None
     };
-    unsupported(walk, top);
-    let (trunk, name, (gauge, gauge_span)) = (trunk?, name?, gauge?);
-    let (surface, places) = trunk.sweep(RIM * gauge.height, walk)?;
-    let (start, end) = (places.start, places.end);
-    fit::check(walk, &surface, &places, &gauge, gauge_span).then(|| Shape {
-        name,
-        gauge,
-        tubes: vec![Tube::new("trunk", Box::new(surface), [start, end])],
-    })
+    let limbs = branch::read(walk, top);
+    if let Some((place, value)) = walk.get(top, "mesh") {
+        mesh(walk, place, value);
+    }
+    let (trunk, name, gauge) = (trunk?, name?, gauge?);
+    let tubes = branch::grow(walk, trunk, limbs?, (&gauge.0, gauge.1))?;
+    Some(Shape { name, gauge: gauge.0, tubes })
 }
-
-/// Radius of the rounded rim of a flat end, in stitch heights: the tightest edge that rows can follow without a crease.
-const RIM: f64 = 2.0;
 
 /// The name of the object: the file's own name where none is given.
 fn name(walk: &mut Walk<'_>, top: &DeTable<'_>, file: &str) -> Option<String> {
@@ -157,6 +151,11 @@ fn name(walk: &mut Walk<'_>, top: &DeTable<'_>, file: &str) -> Option<String> {
         let last = file.rsplit(['/', '\\']).next().unwrap_or(file);
         return Some(last.strip_suffix(".toml").unwrap_or(last).to_owned());
     };
+    line(walk, value)
+}
+
+/// A name: one line of text.
+fn line(walk: &mut Walk<'_>, value: &Value<'_>) -> Option<String> {
     let text = walk.text(value, "name", "a text")?;
     let fault = if text.trim().is_empty() {
         "the name is empty"
@@ -170,42 +169,6 @@ fn name(walk: &mut Walk<'_>, top: &DeTable<'_>, file: &str) -> Option<String> {
     let span = walk.of(value);
     walk.fault(Code::BadName, span, fault.to_owned(), "", "a name is one line of text");
     None
-}
-
-/// Checks the keys of branches and meshes, and says that they cannot be made yet.
-fn unsupported(walk: &mut Walk<'_>, top: &DeTable<'_>) {
-    if let Some((place, value)) = walk.get(top, "branch") {
-        branches(walk, place, value);
-    }
-    if let Some((place, value)) = walk.get(top, "mesh") {
-        mesh(walk, place, value);
-    }
-}
-
-fn branches(walk: &mut Walk<'_>, place: Span, value: &Value<'_>) {
-    const EXPECTED: &str = "a list of tables, written [[branch]]";
-    let Some(entries) = walk.list(value, "branch", EXPECTED, MOST_BRANCHES) else { return };
-    for entry in entries {
-        let Some(table) = walk.table(entry, "branch", "a table") else { continue };
-        let span = walk.of(entry);
-        let name = walk.need(table, "name", ("a branch", span), "name = \"arm\"");
-        if let Some((_, name)) = name {
-            walk.text(name, "name", "a text");
-        }
-        if let Some((_, from)) = walk.need(table, "from", ("a branch", span), "from = 0.5") {
-            walk.number(from, "from");
-        }
-        tube::read(walk, entry, span, "branch");
-    }
-    let count = entries.len();
-    let message = format!("branches are not supported yet, this file has {count}");
-    walk.fault(
-        Code::BranchUnsupported,
-        place,
-        message,
-        "",
-        "make the branch a shape of its own and sew it on",
-    );
 }
 
 fn mesh(walk: &mut Walk<'_>, place: Span, value: &Value<'_>) {

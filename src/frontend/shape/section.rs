@@ -14,7 +14,7 @@ const MOST_POINTS: usize = 10_000;
 const FORMS: &[&str] = &["circle", "ellipse", "loop"];
 
 /// A section with the places that a fault may point at.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Placed {
     /// The section, lengths in mm.
     pub(super) section: Section,
@@ -24,6 +24,14 @@ pub(super) struct Placed {
     pub(super) at: Span,
     /// The value of `circle`, `ellipse` or `loop`.
     pub(super) size: Span,
+}
+
+impl Placed {
+    /// The same at another place of the curve.
+    pub(super) fn moved(mut self, at: f64) -> Self {
+        self.section.at = at;
+        self
+    }
 }
 
 /// Reads `section`: entries in ascending order of `at`.

@@ -5,13 +5,21 @@ use super::section::{self, Placed};
 use super::short;
 use super::walk::{Value, Walk};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::shape::{End, Fault, Interpolation, Profile, Sweep, TubeSpec};
+use crate::math;
+use crate::shape::{Bezier, End, Fault, Interpolation, Profile, Sweep, TubeSpec};
+use glam::DVec3;
 
 const KEYS: &[&str] = &["curve", "start", "end", "section", "interpolation"];
-const BRANCH_KEYS: &[&str] = &["curve", "start", "end", "section", "interpolation", "name", "from"];
+const BRANCH_KEYS: &[&str] =
+    &["curve", "start", "end", "section", "interpolation", "name", "from", "on", "join"];
 const ENDS: &[(&str, End)] = &[("open", End::Open), ("closed", End::Closed)];
 const INTERPOLATIONS: &[(&str, Interpolation)] =
     &[("linear", Interpolation::Linear), ("smooth", Interpolation::Smooth)];
+
+/// Radius of the corner between a tube and the one that carries it on, in radii of the tube, and the greatest share
+/// of a segment that it takes.
+const CORNER: f64 = 1.6;
+const LONGEST_CORNER: f64 = 0.45;
 
 /// The keys of one tube with their places.
 #[derive(Debug)]
@@ -30,14 +38,50 @@ pub(super) struct Places {
     /// The end at u = 1.
     pub(super) end: End,
     home: Span,
-    sections: Vec<(f64, Span)>,
+    curve: Vec<Segment>,
+    sections: Vec<Station>,
+}
+
+/// Where a section stands, along the curve and in the file, and how far it reaches from the curve in mm.
+#[derive(Clone, Copy, Debug)]
+struct Station {
+    at: f64,
+    span: Span,
+    reach: f64,
 }
 
 impl Places {
+    /// Where the tube stands.
+    pub(super) fn home(&self) -> Span {
+        self.home
+    }
+
+    /// Where the beginning of the curve stands.
+    pub(super) fn curve(&self) -> Span {
+        self.curve.first().map_or(self.home, |segment| segment.span)
+    }
+
+    /// The point of the curve at a parameter, in mm.
+    pub(super) fn point(&self, at: f64) -> DVec3 {
+        let x = at.clamp(0.0, 1.0) * self.curve.len() as f64;
+        let index = (x as usize).min(self.curve.len().saturating_sub(1));
+        self.curve.get(index).map_or(DVec3::ZERO, |segment| segment.bezier.point(x - index as f64))
+    }
+
+    /// How far the tube reaches from its curve at a parameter, in mm.
+    pub(super) fn radius(&self, at: f64) -> f64 {
+        let after = self.sections.iter().find(|section| section.at >= at).or(self.sections.last());
+        let before = self.sections.iter().rev().find(|section| section.at <= at).or(self.sections.first());
+        let (Some(before), Some(after)) = (before, after) else { return 0.0 };
+        let span = after.at - before.at;
+        let share = if span > 0.0 { (at - before.at) / span } else { 0.0 };
+        before.reach + (after.reach - before.reach) * share
+    }
+
     /// Where the section nearest to a curve parameter stands.
     pub(super) fn section(&self, at: f64) -> Span {
-        let near = self.sections.iter().min_by(|a, b| (a.0 - at).abs().total_cmp(&(b.0 - at).abs()));
-        near.map_or(self.home, |(_, span)| *span)
+        let near = self.sections.iter().min_by(|a, b| (a.at - at).abs().total_cmp(&(b.at - at).abs()));
+        near.map_or(self.home, |section| section.span)
     }
 }
 
@@ -62,9 +106,27 @@ pub(super) fn read(walk: &mut Walk<'_>, value: &Value<'_>, place: Span, home: &s
     };
     let (segments, sections, start, end) = (segments?, sections?, start?, end?);
     sizes(walk, &sections, start, end).then_some(())?;
-    let stations = sections.iter().map(|section| (section.section.at, section.span)).collect();
-    let places = Places { start, end, home: place, sections: stations };
+    let places = Places { start, end, home: place, curve: Vec::new(), sections: Vec::new() };
     Some(Tube { segments, sections, interpolation: interpolation?, places })
+}
+
+/// Unit direction of a segment at one of its ends, where control points may coincide.
+fn direction(bezier: &Bezier, t: f64) -> DVec3 {
+    let inside = if t < 0.5 { 1e-6 } else { 1.0 - 1e-6 };
+    bezier.derivative(t).try_normalize().unwrap_or_else(|| bezier.derivative(inside).normalize_or_zero())
+}
+
+/// The two parts of a segment, before and after a parameter (de Casteljau).
+fn split(bezier: &Bezier, t: f64) -> (Bezier, Bezier) {
+    let mut points = bezier.points().to_vec();
+    let (mut before, mut after) = (Vec::new(), Vec::new());
+    while let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) {
+        before.push(first);
+        after.push(last);
+        points = points.windows(2).map(|pair| pair[0].lerp(pair[1], t)).collect();
+    }
+    after.reverse();
+    (Bezier::new(&before).unwrap_or(*bezier), Bezier::new(&after).unwrap_or(*bezier))
 }
 
 /// A tube may shrink to a point only where it is closed.
@@ -91,7 +153,89 @@ fn sizes(walk: &mut Walk<'_>, sections: &[Placed], start: End, end: End) -> bool
     sound
 }
 
+/// Greatest distance of a profile from the curve.
+fn reach(profile: &Profile) -> f64 {
+    match profile {
+        Profile::Ellipse { axes, offset } => axes[0].max(axes[1]) + offset.length(),
+        Profile::Loop(points) => points.iter().map(|point| point.length()).fold(0.0, f64::max),
+    }
+}
+
 impl Tube {
+    /// Where its parts stand.
+    pub(super) fn places(&self) -> &Places {
+        &self.places
+    }
+
+    /// Segments of its curve.
+    pub(super) fn segment_count(&self) -> usize {
+        self.segments.len()
+    }
+
+    /// Where its curve leads at its start.
+    pub(super) fn direction_at_start(&self) -> DVec3 {
+        self.segments.first().map_or(DVec3::ZERO, |segment| direction(&segment.bezier, 0.0))
+    }
+
+    /// Where its curve leads at its end.
+    pub(super) fn direction_at_end(&self) -> DVec3 {
+        self.segments.last().map_or(DVec3::ZERO, |segment| direction(&segment.bezier, 1.0))
+    }
+
+    /// Goes on with another tube from its end, around a rounded corner. Returns the index of that tube's first segment.
+    pub(super) fn carry_on(&mut self, next: Self) -> usize {
+        let (own, theirs) = (self.segments.len(), next.segments.len());
+        let first = own + 1;
+        let all = (first + theirs) as f64;
+        let (Some(last), Some(begin)) = (self.segments.last_mut(), next.segments.first()) else { return own };
+        let width = |tube: &[Placed], end: bool| {
+            let placed = if end { tube.last() } else { tube.first() };
+            placed.map_or(0.0, |placed| reach(&placed.section.profile))
+        };
+        let radius = width(&self.sections, true).max(width(&next.sections, false));
+        let (inward, outward) = (direction(&last.bezier, 1.0), direction(&begin.bezier, 0.0));
+        let half = 0.5 * math::atan2(inward.cross(outward).length(), inward.dot(outward));
+        let (sin, cos) = math::sin_cos(half);
+        let room = (CORNER * radius * (sin / cos.max(0.1))).max(0.3 * radius);
+        let cut = |length: f64| (room / length.max(1e-9)).min(LONGEST_CORNER);
+        let (end, start) = (1.0 - cut(last.bezier.length()), cut(begin.bezier.length()));
+        let mut before = split(&last.bezier, end).0;
+        let after = split(&begin.bezier, start).1;
+        std::mem::swap(&mut last.bezier, &mut before);
+        let (a, d) = (last.bezier.point(1.0), after.point(0.0));
+        let handle = a.distance(d) / (3.0 * cos.max(0.3));
+        let (out, back) = (direction(&last.bezier, 1.0) * handle, direction(&after, 0.0) * handle);
+        let span = begin.span;
+        if let Some(bezier) = Bezier::new(&[a, a + out, d - back, d]) {
+            self.segments.push(Segment { bezier, span });
+        }
+        let mut others = next.segments;
+        if let Some(first) = others.first_mut() {
+            first.bezier = after;
+        }
+        self.segments.append(&mut others);
+        // A tube keeps its last section to its end, and its first from its start.
+        let mut sections = std::mem::take(&mut self.sections);
+        let mut more = next.sections;
+        if let Some(last) = sections.last().filter(|last| last.section.at < 1.0).cloned() {
+            sections.push(last.moved(1.0));
+        }
+        if let Some(first) = more.first().filter(|first| first.section.at > 0.0).cloned() {
+            more.insert(0, first.moved(0.0));
+        }
+        let mine = sections.into_iter().map(|placed| {
+            let at = placed.section.at * own as f64 / all;
+            placed.moved(at)
+        });
+        let new = more.into_iter().map(|placed| {
+            let at = (first as f64 + placed.section.at * theirs as f64) / all;
+            placed.moved(at)
+        });
+        self.sections = mine.chain(new).collect();
+        self.places.end = next.places.end;
+        first
+    }
+
     /// The surface with rims of radius `rim` (mm) on its caps, and where its parts stand; `None` when the geometry cannot
     /// be, with the reason reported.
     pub(super) fn sweep(self, rim: f64, walk: &mut Walk<'_>) -> Option<(Sweep, Places)> {
@@ -103,7 +247,15 @@ impl Tube {
             end: self.places.end,
         };
         match Sweep::with_rim(&spec, rim) {
-            Ok(sweep) => Some((sweep, self.places)),
+            Ok(sweep) => {
+                let station = |placed: &Placed| Station {
+                    at: placed.section.at,
+                    span: placed.span,
+                    reach: reach(&placed.section.profile),
+                };
+                let sections = self.sections.iter().map(station).collect();
+                Some((sweep, Places { curve: self.segments, sections, ..self.places }))
+            }
             Err(fault) => {
                 let diagnostic = self.explain(fault);
                 walk.report(diagnostic);

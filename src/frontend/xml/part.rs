@@ -113,7 +113,7 @@ impl<'t> Document<'t, '_, '_> {
     fn segment(&mut self, element: Element<'t>) -> Result<Segment, Stop> {
         let names: &[&str] = match element.name {
             "open" | "held" => &["part", "loops"],
-            "surface" => &["part", "round", "first", "loops"],
+            "surface" => &["part", "round", "first", "loops", "direction"],
             _ => &["loops"],
         };
         self.cursor.only(element, names)?;
@@ -126,6 +126,10 @@ impl<'t> Document<'t, '_, '_> {
                 round: self.cursor.count_of(element, "round", 0..=MAX_LOOPS)?,
                 first: self.cursor.count_of(element, "first", 1..=MAX_LOOPS)?,
                 loops,
+                back: {
+                    let words = Direction::ALL.map(|direction| (direction.word(), direction));
+                    self.cursor.word("direction", &words)? == Some(Direction::Back)
+                },
             },
             _ => Segment::Chain { loops },
         };

@@ -39,7 +39,7 @@ pub(super) fn check(program: &Program, facts: &Facts, sink: &mut Sink<'_>) {
                     *taken.entry((from, id)).or_default() += u64::from(loops) * u64::from(part.copies);
                     None
                 }
-                Segment::Surface { part: from, round, first, loops } => {
+                Segment::Surface { part: from, round, first, loops, .. } => {
                     surface(&parts[from.0 as usize], &facts.parts[from.0 as usize], round, first, loops)
                 }
             };

@@ -137,7 +137,7 @@ pub fn begin(pattern: &Pattern, part: &Part, options: &Options, sink: &mut Sink<
             Segment::Open { part, .. } => Source::Open(part),
             Segment::Held { part, loops } => Source::Held(part, loops),
             Segment::Chain { loops } => Source::Chain(loops),
-            Segment::Surface { part: from, round, first, loops } => {
+            Segment::Surface { part: from, round, first, loops, .. } => {
                 let name = pattern.parts.get(from.0 as usize).map_or("?", |from| from.name.as_str());
                 let last = first.saturating_add(loops.saturating_sub(1));
                 let place = format!("stitches {first} to {last} of round {round} of {name}");

@@ -1,0 +1,177 @@
+//! Two rings of points side by side: the nearest ring of stitches, and the coupling of two rings with least distance.
+
+use glam::DVec3;
+
+/// Sizes of the groups of a coupling: how many of the one ring go with how many of the other.
+type Groups = Vec<(usize, usize)>;
+
+/// Samples of a ring between two of its points.
+const BETWEEN: usize = 6;
+/// Table entries of one coupling beyond which only starts near the nearest point are tried.
+const MOST_WORK: usize = 4_000_000;
+
+/// The closed cycle of places nearest to a ring of points: indices into `places` in the order of the ring, none twice.
+pub(super) fn cycle(ring: &[DVec3], places: &[DVec3]) -> Vec<usize> {
+    let mut cycle: Vec<usize> = Vec::new();
+    for (index, from) in ring.iter().enumerate() {
+        let to = ring[(index + 1) % ring.len()];
+        for k in 0..BETWEEN {
+            let point = from.lerp(to, k as f64 / BETWEEN as f64);
+            let near = (0..places.len()).min_by(|a, b| {
+                places[*a].distance_squared(point).total_cmp(&places[*b].distance_squared(point))
+            });
+            let Some(near) = near else { return cycle };
+            if !cycle.contains(&near) {
+                cycle.push(near);
+            }
+        }
+    }
+    cycle
+}
+
+/// For each point of a ring the index of its partner in another ring of the same direction.
+///
+/// Points are coupled one to one, one to several or several to one, all in order around both rings, with the least total
+/// distance; several are two unless one ring has more than twice the points of the other. Of several partners the nearest
+/// is given. Empty when either ring is.
+pub(super) fn couple(ring: &[DVec3], other: &[DVec3]) -> Vec<usize> {
+    let (n, m) = (ring.len(), other.len());
+    if n == 0 || m == 0 {
+        return Vec::new();
+    }
+    let most = n.div_ceil(m).max(m.div_ceil(n)).max(2);
+    let nearest = (0..m)
+        .min_by(|a, b| other[*a].distance_squared(ring[0]).total_cmp(&other[*b].distance_squared(ring[0])));
+    let around = nearest.unwrap_or(0);
+    let window = (MOST_WORK / (n * m * 2 * most * most).max(1)).clamp(3, m);
+    let mut best: Option<(f64, usize, usize, Groups)> = None;
+    // A group of points may lie across the place where the ring is cut.
+    for turn in 0..most.min(n) {
+        for shift in 0..window {
+            let start = (around + m + shift - window / 2) % m;
+            let at = |i: usize, j: usize| ring[(n + i - turn) % n].distance(other[(start + j) % m]);
+            if let Some((cost, groups)) = straight(n, m, most, at)
+                && best.as_ref().is_none_or(|best| cost < best.0 - 1e-9)
+            {
+                best = Some((cost, turn, start, groups));
+            }
+        }
+    }
+    let Some((_, turn, start, groups)) = best else { return Vec::new() };
+    let mut partner = vec![0; n];
+    let (mut i, mut j) = (0, 0);
+    for (mine, theirs) in groups {
+        for k in i..i + mine {
+            let index = (n + k - turn) % n;
+            let near = (j..j + theirs).map(|j| (start + j) % m).min_by(|a, b| {
+                other[*a].distance_squared(ring[index]).total_cmp(&other[*b].distance_squared(ring[index]))
+            });
+            partner[index] = near.unwrap_or(0);
+        }
+        (i, j) = (i + mine, j + theirs);
+    }
+    partner
+}
+
+/// The best grouping of two open rows: total distance, and the sizes of groups.
+fn straight(
+    n: usize,
+    m: usize,
+    most: usize,
+    distance: impl Fn(usize, usize) -> f64,
+) -> Option<(f64, Groups)> {
+    let width = m + 1;
+    let mut cost = vec![(f64::INFINITY, 0_usize, 0_usize); (n + 1) * width];
+    cost[0].0 = 0.0;
+    for i in 0..n {
+        for j in 0..m {
+            let here = cost[i * width + j].0;
+            if here == f64::INFINITY {
+                continue;
+            }
+            let mut offer = |mine: usize, theirs: usize, sum: f64| {
+                let place = &mut cost[(i + mine) * width + j + theirs];
+                if here + sum < place.0 {
+                    *place = (here + sum, mine, theirs);
+                }
+            };
+            let mut sum = 0.0;
+            for k in 0..most.min(n - i) {
+                sum += distance(i + k, j);
+                offer(k + 1, 1, sum);
+            }
+            let mut sum = 0.0;
+            for k in 0..most.min(m - j) {
+                sum += distance(i, j + k);
+                if k > 0 {
+                    offer(1, k + 1, sum);
+                }
+            }
+        }
+    }
+    let total = cost[n * width + m].0;
+    let mut groups = Vec::with_capacity(n.max(m));
+    let (mut i, mut j) = (n, m);
+    while (i, j) != (0, 0) {
+        let (value, mine, theirs) = cost[i * width + j];
+        if value == f64::INFINITY || mine == 0 {
+            return None;
+        }
+        groups.push((mine, theirs));
+        (i, j) = (i - mine, j - theirs);
+    }
+    groups.reverse();
+    Some((total, groups))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{TAU, cos, sin};
+
+    fn circle(count: usize, radius: f64, phase: f64) -> Vec<DVec3> {
+        let at = |k: usize| TAU * (k as f64 + phase) / count as f64;
+        (0..count).map(|k| DVec3::new(radius * cos(at(k)), radius * sin(at(k)), 0.0)).collect()
+    }
+
+    #[test]
+    fn equal_rings_are_coupled_one_to_one() {
+        let ring = circle(17, 5.0, 0.0);
+        let mut other = circle(17, 5.3, 0.2);
+        other.rotate_left(6);
+        let partners = couple(&ring, &other);
+        let expected: Vec<usize> = (0..17).map(|k| (k + 17 - 6) % 17).collect();
+        assert_eq!(partners, expected);
+    }
+
+    #[test]
+    fn a_coupling_is_as_short_as_any_and_keeps_the_order() {
+        for (n, m) in [(5, 7), (7, 5), (6, 12), (4, 11), (9, 9)] {
+            let (ring, other) = (circle(n, 4.0, 0.3), circle(m, 4.2, 0.1));
+            let partners = couple(&ring, &other);
+            assert_eq!(partners.len(), n);
+            let steps = (0..n).map(|k| (partners[(k + 1) % n] + m - partners[k]) % m);
+            assert!(steps.clone().sum::<usize>() == m, "{n} {m}: around once: {partners:?}");
+            for (k, partner) in partners.iter().enumerate() {
+                let least = other.iter().map(|p| p.distance(ring[k])).fold(f64::MAX, f64::min);
+                assert!(ring[k].distance(other[*partner]) < least + 3.0, "{n} {m}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_cycle_is_the_nearest_ring_of_a_lattice() {
+        let lattice: Vec<DVec3> = (-10..=10)
+            .flat_map(|x| (-10..=10).map(move |y| DVec3::new(f64::from(x), f64::from(y), 0.0)))
+            .collect();
+        let ring = circle(25, 4.0, 0.5);
+        let cycle = cycle(&ring, &lattice);
+        assert!(cycle.len() >= 20 && cycle.len() <= 34, "{}", cycle.len());
+        for (k, index) in cycle.iter().enumerate() {
+            let point = lattice[*index];
+            assert!((point.length() - 4.0).abs() < 1.0);
+            let next = lattice[cycle[(k + 1) % cycle.len()]];
+            assert!(point.distance(next) < 2.3, "neighbors are next to each other");
+        }
+    }
+}

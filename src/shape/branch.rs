@@ -1,0 +1,274 @@
+//! Where a branch leaves its parent: the rim in which the two tubes meet, and the part of the branch beyond it.
+
+use super::solid::{Foot, Solid};
+use super::{Jet, ParametricSurface};
+use crate::math;
+use glam::DVec3;
+
+/// Places around a branch at which its rim is sought.
+const AROUND: usize = 64;
+/// Steps along a branch in which its way out of the parent is sought.
+const ALONG: u32 = 48;
+/// How far a branch that begins on the surface of its parent may be continued backward into it, in its own girths.
+const BACKWARD: f64 = 0.75;
+/// Depth (mm) at which tubes that touch begin to cross.
+const TOUCH: f64 = 1e-3;
+/// Share of a branch next to its rim that is not asked whether it lies in the parent.
+const RIM: f64 = 0.1;
+/// Reach (stitch widths) over which a rim is rounded: yarn makes no finer corners.
+const ROUNDED: f64 = 1.2;
+/// Places on a tube at which it is asked whether it runs into another one.
+const CROSSING: [u32; 2] = [40, 24];
+
+/// Why a tube is no branch of another one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Misfit {
+    /// It does not touch its parent.
+    Apart {
+        /// Least distance of the two, in mm.
+        distance: f64,
+    },
+    /// It leaves the parent on some sides only: it is too wide, or too far to one side.
+    Beside {
+        /// Share of its girth that does not come out of the parent.
+        share: f64,
+    },
+    /// It leaves through an open end of the parent.
+    OpenEnd,
+    /// It does not come out of the parent.
+    Inside,
+    /// It comes back into its parent.
+    Returns {
+        /// Where, in mm.
+        at: DVec3,
+    },
+}
+
+/// The visible part of a branch: S'(u, v) = S(m + (1 - m) u + (u0(v) - m) b(u), v), where S(u0(v), v) is the rim on the
+/// parent and m the mean of u0. The rows follow the rim at first and come level toward the tip, as b falls from 1 to 0.
+#[derive(Debug)]
+pub struct Branch<S> {
+    surface: S,
+    /// u0 at evenly spaced v, and its slope there.
+    rim: Vec<[f64; 2]>,
+    mean: f64,
+    /// b(u) = (1 - u) (1 - q u): with q = 1 rows come level soon, with q = 0 as late as can be.
+    ease: f64,
+    /// v at which the branch begins, in turns.
+    phase: f64,
+}
+
+impl<S: ParametricSurface> Branch<S> {
+    /// Cuts a branch off at the surface of its parent. Rims have no corners finer than a stitch of
+    /// `width` (mm), and rows may lie off them by `give` stitches, for fabric yields.
+    ///
+    /// The line v = 0 begins at the place of the rim that a round of the parent comes to first.
+    pub(crate) fn new(surface: S, parent: &Solid<'_>, width: f64, give: f64) -> Result<Self, Misfit> {
+        let girth = super::girth(&surface, 0.0, 32);
+        let length = super::length_along(&surface, 0.0, 0.0..1.0, 8).max(1e-9);
+        let back = BACKWARD * girth / length;
+        let ways: Vec<Way> =
+            (0..AROUND).map(|k| Way::out(&surface, parent, k as f64 / AROUND as f64, back)).collect();
+        let mut outs = Vec::with_capacity(AROUND);
+        let mut least = f64::INFINITY;
+        for way in &ways {
+            match *way {
+                Way::Out(u, foot) => outs.push((u, foot)),
+                Way::Never(distance) => least = least.min(distance),
+                Way::OpenEnd => return Err(Misfit::OpenEnd),
+                Way::Inside => return Err(Misfit::Inside),
+            }
+        }
+        if outs.is_empty() {
+            return Err(Misfit::Apart { distance: least });
+        }
+        if outs.len() < AROUND {
+            return Err(Misfit::Beside { share: 1.0 - outs.len() as f64 / AROUND as f64 });
+        }
+        let mut places: Vec<f64> = outs.iter().map(|out| out.0).collect();
+        let sharp = Self { rim: with_slopes(&places), mean: mean(&places), ease: 0.0, phase: 0.0, surface };
+        if let Some(at) = points(&sharp, RIM).find(|point| parent.contains(*point, TOUCH)) {
+            return Err(Misfit::Returns { at });
+        }
+        soften(&mut places, ROUNDED * width * AROUND as f64 / girth.max(1e-9));
+        level(&mut places, give * width / length);
+        let mean = mean(&places);
+        let highest = places.iter().copied().fold(mean, f64::max);
+        // Rows nowhere come nearer to each other than a fifth of their mean distance.
+        let ease = (0.8 * (1.0 - mean) / (highest - mean).max(1e-9) - 1.0).clamp(0.0, 1.0);
+        let phase = first_met(&outs.iter().map(|out| out.1).collect::<Vec<_>>());
+        Ok(Self { rim: with_slopes(&places), mean, ease, phase, ..sharp })
+    }
+
+    /// The underlying u at a visible u, with its slopes by u and v.
+    fn place(&self, u: f64, v: f64) -> (f64, f64, f64) {
+        let (rim, slope) = self.rim(v);
+        let (rest, off) = (1.0 - u, rim - self.mean);
+        let (b, fall) = (rest * (1.0 - self.ease * u), -1.0 - self.ease + 2.0 * self.ease * u);
+        (self.mean + (1.0 - self.mean) * u + off * b, 1.0 - self.mean + off * fall, slope * b)
+    }
+
+    /// u0 and its slope.
+    fn rim(&self, v: f64) -> (f64, f64) {
+        let count = self.rim.len();
+        let x = (v - v.floor()) * count as f64;
+        let before = (x as usize).min(count - 1);
+        let t = x - before as f64;
+        let ([a, da], [b, db]) = (self.rim[before], self.rim[(before + 1) % count]);
+        let rise = b - a;
+        let (square, cube) = (3.0 * rise - 2.0 * da - db, da + db - 2.0 * rise);
+        (a + t * (da + t * (square + t * cube)), (da + t * (2.0 * square + t * 3.0 * cube)) * count as f64)
+    }
+}
+
+impl<S: ParametricSurface> ParametricSurface for Branch<S> {
+    fn point(&self, u: f64, v: f64) -> DVec3 {
+        let v = v + self.phase;
+        self.surface.point(self.place(u, v).0, v)
+    }
+
+    fn jet(&self, u: f64, v: f64) -> Jet {
+        let v = v + self.phase;
+        let (place, along, around) = self.place(u, v);
+        let jet = self.surface.jet(place, v);
+        Jet { point: jet.point, du: jet.du * along, dv: jet.dv + jet.du * around }
+    }
+}
+
+/// Where `tube` runs into `other`, if it does; in mm.
+pub(crate) fn crossing(tube: &dyn ParametricSurface, other: &Solid<'_>) -> Option<DVec3> {
+    points(tube, 0.0).find(|point| other.contains(*point, TOUCH))
+}
+
+/// Points all over a tube, from a share of its length on.
+fn points(tube: &(impl ParametricSurface + ?Sized), from: f64) -> impl Iterator<Item = DVec3> + '_ {
+    let [along, around] = CROSSING;
+    (0..=along).flat_map(move |i| {
+        let u = from + (1.0 - from) * f64::from(i) / f64::from(along);
+        (0..around).map(move |k| tube.point(u, f64::from(k) / f64::from(around)))
+    })
+}
+
+/// How one line of a branch leaves its parent.
+enum Way {
+    /// At this u, over this place of the parent.
+    Out(f64, Foot),
+    /// It never is inside; the least distance.
+    Never(f64),
+    OpenEnd,
+    Inside,
+}
+
+impl Way {
+    fn out(surface: &dyn ParametricSurface, parent: &Solid<'_>, v: f64, back: f64) -> Self {
+        let at = |u: f64| parent.foot(surface.point(u, v));
+        let first = at(0.0);
+        let inside = |foot: &Foot| foot.distance < 0.0 && !foot.beyond;
+        let mut least = first.distance.abs();
+        let step = 1.0 / f64::from(ALONG);
+        let mut last = 0.0;
+        if !inside(&first) {
+            // A branch that begins on the surface goes back into it, and only one that begins outside reaches it later.
+            let backward = (1..=ALONG).map(|k| -back * f64::from(k) * step);
+            let forward = (1..ALONG).map(|k| f64::from(k) * step);
+            let mut out = 0.0;
+            let mut found = false;
+            for u in backward.chain(forward) {
+                if u > 0.0 && out < 0.0 {
+                    out = 0.0;
+                }
+                let foot = at(u);
+                least = least.min(foot.distance.abs());
+                if inside(&foot) {
+                    if u < 0.0 {
+                        return Self::between(parent, surface, v, u, out);
+                    }
+                    (found, last) = (true, u);
+                    break;
+                }
+                out = u;
+            }
+            if !found {
+                return Self::Never(least);
+            }
+        }
+        let start = (last / step) as u32 + 1;
+        for u in (start..=ALONG).map(|k| f64::from(k) * step) {
+            let foot = at(u);
+            if foot.beyond {
+                return Self::OpenEnd;
+            }
+            if foot.distance >= 0.0 {
+                return Self::between(parent, surface, v, last, u);
+            }
+            last = u;
+        }
+        Self::Inside
+    }
+
+    /// The way out between a place inside and one outside.
+    fn between(
+        parent: &Solid<'_>,
+        surface: &dyn ParametricSurface,
+        v: f64,
+        mut inside: f64,
+        mut outside: f64,
+    ) -> Self {
+        let mut foot = parent.foot(surface.point(outside, v));
+        for _ in 0..40 {
+            let middle = 0.5 * (inside + outside);
+            let next = parent.refine(surface.point(middle, v), foot.u, foot.v);
+            if next.distance < 0.0 {
+                inside = middle;
+            } else {
+                (outside, foot) = (middle, next);
+            }
+        }
+        if foot.beyond { Self::OpenEnd } else { Self::Out(outside, foot) }
+    }
+}
+
+/// Rounds off what is finer than `reach` places: binomial smoothing of that deviation.
+fn soften(places: &mut [f64], reach: f64) {
+    let count = places.len();
+    // One pass has a variance of 1/2.
+    for _ in 0..((2.0 * reach * reach).round() as usize).min(4 * count) {
+        let before = places.to_vec();
+        for (k, place) in places.iter_mut().enumerate() {
+            *place = 0.25 * (before[(k + count - 1) % count] + 2.0 * before[k] + before[(k + 1) % count]);
+        }
+    }
+}
+
+/// Brings values nearer to their mean, by `give` at most.
+fn level(places: &mut [f64], give: f64) {
+    let mean = mean(places);
+    for place in places {
+        let off = *place - mean;
+        *place -= off.signum() * give * (1.0 - math::exp(-off.abs() / give.max(1e-12)));
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+/// Values with the slopes of a periodic cubic through them, a place.
+fn with_slopes(places: &[f64]) -> Vec<[f64; 2]> {
+    let count = places.len();
+    (0..count)
+        .map(|k| [places[k], 0.5 * (places[(k + 1) % count] - places[(k + count - 1) % count])])
+        .collect()
+}
+
+/// The place of a rim, in turns, that a round of the parent comes to first: the one of least v on the parent, halfway up.
+fn first_met(feet: &[Foot]) -> f64 {
+    let turn = |v: f64| v - v.round();
+    let origin = feet.first().map_or(0.0, |foot| foot.v);
+    let mean = feet.iter().map(|foot| turn(foot.v - origin)).sum::<f64>() / feet.len().max(1) as f64;
+    let least = feet
+        .iter()
+        .enumerate()
+        .min_by(|a, b| turn(a.1.v - origin - mean).total_cmp(&turn(b.1.v - origin - mean)));
+    least.map_or(0.0, |(k, _)| k as f64 / feet.len() as f64)
+}
