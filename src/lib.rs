@@ -52,6 +52,7 @@ pub mod shape;
 
 use diag::{Code, Diagnostic, Sink, Source, Sources};
 use frontend::crochet::{self, Conventions};
+use frontend::mesh;
 use frontend::{Input, Reader};
 use generate::capunaman::Baseline;
 use ir::{Finish, Gauge, Graph, Part, PartId, Pattern, Program};
@@ -68,6 +69,8 @@ pub struct Options {
     pub generate: generate::Options,
     /// Conventions of written patterns; what a file declares itself comes first.
     pub conventions: Conventions,
+    /// How to read a mesh that is given directly.
+    pub mesh: mesh::Reading,
 }
 
 /// From an opened file to a program, ready for [`ir::verify::verify`]; `None` when the sink has the reason.
@@ -115,6 +118,10 @@ pub fn read(
     let errors = sink.errors();
     let input = if reader.name == crochet::READER.name {
         crochet::read(source, &options.conventions, sink)
+    } else if mesh::is_mesh(reader) {
+        mesh::read(source, reader, options.mesh, options.gauge, sources, sink)
+    } else if reader.name == frontend::shape::READER.name {
+        frontend::shape::read_at(source, options.gauge, sources, sink)
     } else {
         (reader.read)(source, sources, sink)
     };

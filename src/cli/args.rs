@@ -3,7 +3,8 @@
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use picot::backends::TARGETS;
-use picot::frontend::READERS;
+use picot::frontend::mesh::Up;
+use picot::frontend::{READERS, Unit};
 use picot::ir::Gauge;
 
 const EXAMPLES: &str = "\
@@ -75,6 +76,12 @@ pub(crate) struct Reading {
     /// Stitch size in place of the file's own, such as 2.5mmx2.5mm
     #[arg(long, value_name = "WxH", value_parser = gauge)]
     pub(crate) gauge: Option<Gauge>,
+    /// Unit of a mesh that is given directly: mm, cm or in
+    #[arg(long, value_name = "UNIT", value_parser = word(Unit::WORDS))]
+    pub(crate) unit: Option<String>,
+    /// Axis of such a mesh that points up: x, y or z
+    #[arg(long, value_name = "AXIS", value_parser = word(Up::WORDS))]
+    pub(crate) up: Option<String>,
     /// Knitting machine for `.k` and `.kc`: a name of `picot list machines`, or a profile file
     #[arg(long, value_name = "NAME")]
     pub(crate) machine: Option<String>,
@@ -254,6 +261,10 @@ fn targets() -> PossibleValuesParser {
 
 fn readers() -> PossibleValuesParser {
     PossibleValuesParser::new(READERS.iter().map(|reader| reader.name))
+}
+
+fn word<T>(words: &'static [(&'static str, T)]) -> PossibleValuesParser {
+    PossibleValuesParser::new(words.iter().map(|(word, _)| *word))
 }
 
 fn setting(text: &str) -> Result<(String, toml::Value), String> {

@@ -5,6 +5,7 @@ use super::{Failure, files};
 use picot::backends::{TARGETS, Target};
 use picot::diag::{Sink, Sources, did_you_mean};
 use picot::frontend::crochet::{Conventions, Setting};
+use picot::frontend::{Unit, mesh};
 use picot::generate;
 use picot::ir::machine::{MACHINES, Machine};
 
@@ -98,7 +99,16 @@ pub(crate) fn route(reading: &Reading, targets: &[&'static Target]) -> Result<Ro
         );
     }
     let machine = machine.map(|(machine, _)| machine);
-    Ok(Routed { options: picot::Options { gauge: reading.gauge, generate, conventions }, tables, machine })
+    let mesh = mesh::Reading {
+        unit: named(Unit::WORDS, reading.unit.as_deref()),
+        up: named(mesh::Up::WORDS, reading.up.as_deref()),
+    };
+    let options = picot::Options { gauge: reading.gauge, generate, conventions, mesh };
+    Ok(Routed { options, tables, machine })
+}
+
+fn named<T: Copy>(words: &[(&str, T)], name: Option<&str>) -> Option<T> {
+    words.iter().find(|(word, _)| Some(*word) == name).map(|(_, value)| *value)
 }
 
 fn wrong_value(key: &str, error: &toml::de::Error) -> Failure {

@@ -3,7 +3,11 @@
 pub mod crochet;
 pub mod kcode;
 pub mod knitout;
-mod shape;
+pub mod mesh;
+pub(crate) mod shape;
+mod unit;
+
+pub use unit::Unit;
 
 use crate::diag::{Sink, Source, Sources};
 use crate::ir::Program;
@@ -37,8 +41,17 @@ pub struct Reader {
 }
 
 /// Every reader.
-pub static READERS: &[Reader] =
-    &[crochet::READER, shape::READER, kcode::READER, knitout::READER, xml::READER];
+pub static READERS: &[Reader] = &[
+    crochet::READER,
+    shape::READER,
+    kcode::READER,
+    knitout::READER,
+    xml::READER,
+    mesh::OBJ,
+    mesh::STL,
+    mesh::PLY,
+    mesh::GLTF,
+];
 
 /// The reader with this name.
 pub fn reader(name: &str) -> Option<&'static Reader> {
@@ -48,4 +61,15 @@ pub fn reader(name: &str) -> Option<&'static Reader> {
 /// The reader that a file extension (without the dot, in any case) stands for.
 pub fn reader_for_extension(extension: &str) -> Option<&'static Reader> {
     READERS.iter().find(|reader| reader.extensions.iter().any(|known| known.eq_ignore_ascii_case(extension)))
+}
+
+/// The name of a file that another one names: relative names count from the folder of the other.
+fn beside(home: &str, name: &str) -> String {
+    if name.starts_with(['/', '\\']) || name.contains(':') {
+        return name.to_owned();
+    }
+    match home.rfind(['/', '\\']) {
+        Some(end) => format!("{}{name}", home.get(..=end).unwrap_or_default()),
+        None => name.to_owned(),
+    }
 }

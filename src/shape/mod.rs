@@ -8,15 +8,21 @@ pub mod frame;
 pub mod loops;
 pub mod measure;
 mod meridian;
+pub mod mesh;
 mod profile;
+mod revolve;
+mod ring;
 mod smooth;
 pub(crate) mod solid;
 pub mod spec;
+mod stack;
 pub mod sweep;
 
 pub use bezier::Bezier;
 pub use measure::{area, girth, is_revolution, length_along};
+pub use ring::Ring;
 pub use spec::{Fault, Interpolation, Profile, Section, TubeSpec};
+pub use stack::Stack;
 pub use sweep::Sweep;
 
 use crate::ir::Gauge;

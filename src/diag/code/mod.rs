@@ -67,14 +67,16 @@ impl Code {
 // A group of numbers a file; what the numbers mean stands at the head of each. A new diagnostic is a new row there.
 mod general;
 mod machine;
+mod mesh;
 mod pattern;
 mod shape;
 mod xml;
 
 use general::general;
 use machine::machine;
+use mesh::mesh;
 use pattern::pattern;
 use shape::shape;
 use xml::xml;
 
-pattern! { (shape machine xml general codes) }
+pattern! { (shape mesh machine xml general codes) }

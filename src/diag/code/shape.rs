@@ -146,14 +146,6 @@ NoParent = "E1021", "no part to grow from";
 /// Wrong: two branches with `name = "leg"`
 /// Right: `name = "left leg"` and `name = "right leg"`
 PartNameTwice = "E1022", "two parts have one name";
-/// Meshes are not read yet.
-///
-/// The keys of `[mesh]` are read and checked, but no pattern comes of them. Describe the shape by a curve and
-/// sections, or by loops of points cut from the mesh.
-///
-/// Wrong: `[mesh]` with `file = "duck.obj"`
-/// Right: `[trunk]` with `curve` and `section`
-MeshUnsupported = "E1014", "meshes are not supported yet";
 /// A list is empty where something is needed.
 ///
 /// Wrong: `section = []`

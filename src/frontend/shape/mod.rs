@@ -7,22 +7,23 @@ mod branch;
 mod curve;
 mod fit;
 mod gauge;
+mod mesh;
 mod section;
 mod tube;
-mod unit;
 mod walk;
 
+use super::unit::Unit;
 use super::{Input, Reader};
-use crate::diag::{Code, Diagnostic, Sink, Source, Sources, Span};
+use crate::diag::{Code, Diagnostic, Sink, Source, Sources};
+use crate::ir::Gauge;
 use crate::shape::Shape;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeTable;
-use unit::Unit;
 use walk::{Value, Walk, misspelled, quote};
 
 /// The reader of shape files.
-pub(super) const READER: Reader = Reader {
+pub(crate) const READER: Reader = Reader {
     name: "shape",
     extensions: &["toml"],
     about: "shape files: a control curve with sections along it, and a gauge",
@@ -34,15 +35,35 @@ const MOST_SYNTAX_ERRORS: usize = 32;
 /// Most characters of a name.
 const LONGEST_NAME: usize = 200;
 
-fn read(source: &Source, _: &mut Sources<'_>, sink: &mut Sink<'_>) -> Option<Input> {
-    let mut walk = Walk::new(source);
-    let shape = parse(source, &mut walk);
-    let errors = sink.errors();
-    walk.finish().into_iter().for_each(|diagnostic| sink.push(diagnostic));
-    shape.filter(|_| sink.errors() == errors).map(|shape| Input::Shape(Box::new(shape)))
+/// What a shape file describes.
+enum Document {
+    Shape(Shape),
+    Mesh(mesh::Request),
 }
 
-fn parse(source: &Source, walk: &mut Walk<'_>) -> Option<Shape> {
+fn read(source: &Source, sources: &mut Sources<'_>, sink: &mut Sink<'_>) -> Option<Input> {
+    read_at(source, None, sources, sink)
+}
+
+/// Reads a shape file; `gauge` takes the place of its own, which matters where a mesh is cut.
+pub(crate) fn read_at(
+    source: &Source,
+    gauge: Option<Gauge>,
+    sources: &mut Sources<'_>,
+    sink: &mut Sink<'_>,
+) -> Option<Input> {
+    let mut walk = Walk::new(source);
+    let document = parse(source, &mut walk);
+    let errors = sink.errors();
+    walk.finish().into_iter().for_each(|diagnostic| sink.push(diagnostic));
+    let shape = match document.filter(|_| sink.errors() == errors)? {
+        Document::Shape(shape) => shape,
+        Document::Mesh(request) => request.fulfill(source, gauge, sources, sink)?,
+    };
+    Some(Input::Shape(Box::new(shape)))
+}
+
+fn parse(source: &Source, walk: &mut Walk<'_>) -> Option<Document> {
     let text = match source.text() {
         Ok(text) => text,
         Err(offset) => {
@@ -114,7 +135,7 @@ fn first_of(text: &str, key: &str, again: usize) -> Option<Range<usize>> {
     None
 }
 
-fn document_of(walk: &mut Walk<'_>, document: &Spanned<DeTable<'_>>, file: &str) -> Option<Shape> {
+fn document_of(walk: &mut Walk<'_>, document: &Spanned<DeTable<'_>>, file: &str) -> Option<Document> {
     let top = document.get_ref();
     let home = walk.span(0..0);
     walk.known(top, "a shape file", &["name", "unit", "gauge", "trunk", "branch", "mesh"]);
@@ -126,10 +147,15 @@ fn document_of(walk: &mut Walk<'_>, document: &Spanned<DeTable<'_>>, file: &str)
     }
     let name = name(walk, top, file);
     let gauge = gauge::read(walk, top, home);
+    if let Some((place, value)) = walk.get(top, "mesh") {
+        let request = mesh::read(walk, top, value, place);
+        let (request, name, (gauge, _)) = (request?, name?, gauge?);
+        return Some(Document::Mesh(request.of(name, gauge)));
+    }
     let trunk = if let Some((place, value)) = walk.get(top, "trunk") {
         tube::read(walk, value, place, "trunk")
     } else {
-        if walk.get(top, "mesh").is_none() && !misspelled(top, "trunk") {
+        if !misspelled(top, "trunk") {
             let message = "the file has no `trunk`".to_owned();
             let help = "add\n[trunk]\ncurve = [[0, 0, 0], [0, 0, 10]]\nsection = [{ at = 0, circle = 2 }]";
             walk.fault(Code::MissingKey, home, message, "", help);
@@ -137,12 +163,9 @@ fn document_of(walk: &mut Walk<'_>, document: &Spanned<DeTable<'_>>, file: &str)
         None
     };
     let limbs = branch::read(walk, top);
-    if let Some((place, value)) = walk.get(top, "mesh") {
-        mesh(walk, place, value);
-    }
     let (trunk, name, gauge) = (trunk?, name?, gauge?);
     let tubes = branch::grow(walk, trunk, limbs?, (&gauge.0, gauge.1))?;
-    Some(Shape { name, gauge: gauge.0, tubes })
+    Some(Document::Shape(Shape { name, gauge: gauge.0, tubes }))
 }
 
 /// The name of the object: the file's own name where none is given.
@@ -169,23 +192,6 @@ fn line(walk: &mut Walk<'_>, value: &Value<'_>) -> Option<String> {
     let span = walk.of(value);
     walk.fault(Code::BadName, span, fault.to_owned(), "", "a name is one line of text");
     None
-}
-
-fn mesh(walk: &mut Walk<'_>, place: Span, value: &Value<'_>) {
-    if let Some(table) = walk.table(value, "mesh", "a table with `file`") {
-        walk.known(table, "`mesh`", &["file", "unit", "up", "field", "poles", "curve"]);
-        if let Some((_, file)) = walk.need(table, "file", ("`mesh`", place), "file = \"duck.obj\"") {
-            walk.text(file, "file", "a file name");
-        }
-        if let Some((_, unit)) = walk.get(table, "unit") {
-            walk.word(unit, "unit", Unit::WORDS);
-        }
-        if let Some((_, up)) = walk.get(table, "up") {
-            walk.word(up, "up", &[("x", ()), ("y", ()), ("z", ())]);
-        }
-    }
-    let message = "meshes are not supported yet".to_owned();
-    walk.fault(Code::MeshUnsupported, place, message, "", "describe the shape by a `trunk`");
 }
 
 /// A number for a message: up to three decimals, no trailing zeros.

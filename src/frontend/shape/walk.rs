@@ -1,6 +1,6 @@
 //! Walking a TOML value with diagnostics: every accessor says what was expected and what was found, and where.
 
-use super::unit::Unit;
+use super::super::unit::Unit;
 use crate::diag::{Code, Diagnostic, Edit, Fix, Source, Span, did_you_mean};
 use std::ops::Range;
 use toml::Spanned;

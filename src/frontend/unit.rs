@@ -1,45 +1,50 @@
-//! Units of length of shape files; everything behind the reader is in millimeters.
+//! Units of length of shapes and meshes; everything behind the readers is in millimeters.
 
 /// A unit of length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Unit {
+pub enum Unit {
     /// Millimeters.
     Mm,
     /// Centimeters.
     Cm,
     /// Inches of 25.4 mm.
     Inch,
+    /// Meters, in which glTF counts.
+    Meter,
 }
 
 impl Unit {
     /// The units by the words of a shape file.
-    pub(super) const WORDS: &'static [(&'static str, Self)] =
+    pub const WORDS: &'static [(&'static str, Self)] =
         &[("mm", Self::Mm), ("cm", Self::Cm), ("in", Self::Inch)];
 
     /// Millimeters in one.
-    pub(super) fn mm(self) -> f64 {
+    pub fn mm(self) -> f64 {
         match self {
             Self::Mm => 1.0,
             Self::Cm => 10.0,
             Self::Inch => 25.4,
+            Self::Meter => 1000.0,
         }
     }
 
     /// The word for it.
-    pub(super) fn word(self) -> &'static str {
+    pub fn word(self) -> &'static str {
         match self {
             Self::Mm => "mm",
             Self::Cm => "cm",
             Self::Inch => "in",
+            Self::Meter => "m",
         }
     }
 
     /// Its full name, many of it.
-    pub(super) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Mm => "millimeters",
             Self::Cm => "centimeters",
             Self::Inch => "inches",
+            Self::Meter => "meters",
         }
     }
 }

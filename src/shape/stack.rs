@@ -1,0 +1,279 @@
+//! A tube through a stack of loops: bicubic between even samples, smooth through its poles.
+
+use super::ring::{Ring, gap};
+use super::{End, Jet, ParametricSurface};
+use glam::DVec3;
+
+/// A tube S(u, v) through loops in order; v is the share of a loop's length, u the share of the mean distance.
+///
+/// Between loops and between samples it is a cubic with Catmull-Rom slopes (centripetal in u by the distances of the
+/// loops). At a closed end the loops shrink to a point, and the cubic goes on through it to the loop's other side.
+#[derive(Clone, Debug)]
+pub struct Stack {
+    /// u of each row of samples.
+    places: Vec<f64>,
+    /// Rows of `around` samples, one after the other.
+    samples: Vec<DVec3>,
+    around: usize,
+    ends: [End; 2],
+    /// Length from end to end, mean over v, in the unit of the loops.
+    length: f64,
+}
+
+/// Most rows of samples.
+const MOST_LOOPS: usize = 100_000;
+/// Most samples around.
+const MOST_AROUND: usize = 512;
+
+impl Stack {
+    /// A tube through closed lines, all run through in the sense that v has (clockwise seen from the end of the tube
+    /// back to its start), each turned against the one before. A closed end goes on to a point: give it as `poles`.
+    ///
+    /// `None` for fewer than two rows, or loops that all lie in one place.
+    pub fn new(loops: &[Ring], poles: [Option<DVec3>; 2], around: usize) -> Option<Self> {
+        let around = around.clamp(8, MOST_AROUND);
+        let mut rows: Vec<Vec<DVec3>> = Vec::with_capacity(loops.len());
+        for ring in loops.iter().take(MOST_LOOPS) {
+            let row = match rows.last() {
+                Some(before) => ring.beside(before),
+                None => ring.samples(around, 0.0),
+            };
+            rows.push(row);
+        }
+        Self::of_rows(rows, poles)
+    }
+
+    /// A tube through rows of samples that lie beside each other already.
+    pub(crate) fn of_rows(mut rows: Vec<Vec<DVec3>>, poles: [Option<DVec3>; 2]) -> Option<Self> {
+        let around = rows.first()?.len();
+        if let Some(pole) = poles[0] {
+            rows.insert(0, vec![pole; around]);
+        }
+        if let Some(pole) = poles[1] {
+            rows.push(vec![pole; around]);
+        }
+        let mut kept: Vec<Vec<DVec3>> = Vec::with_capacity(rows.len());
+        let mut places: Vec<f64> = Vec::with_capacity(rows.len());
+        let mut total = 0.0;
+        for row in rows {
+            let step = kept.last().map_or(0.0, |before| gap(before, &row).0);
+            // Loops in the same place have no direction between them.
+            if !kept.is_empty() && step <= 1e-9 * (1.0 + total) {
+                continue;
+            }
+            total += step;
+            places.push(total);
+            kept.push(row);
+        }
+        if kept.len() < 2 || !total.is_finite() || total <= 0.0 || around < 8 {
+            return None;
+        }
+        for place in &mut places {
+            *place /= total;
+        }
+        let ends = poles.map(|pole| if pole.is_some() { End::Closed } else { End::Open });
+        let samples: Vec<DVec3> = kept.concat();
+        samples.iter().all(|p| p.is_finite()).then_some(Self { places, samples, around, ends, length: total })
+    }
+
+    /// How the ends are closed.
+    pub fn ends(&self) -> [End; 2] {
+        self.ends
+    }
+
+    /// Mean length from end to end.
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// The rows of samples, poles included, from start to end.
+    pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[DVec3]> {
+        self.samples.chunks_exact(self.around)
+    }
+
+    /// The places of the rows in u.
+    pub fn places(&self) -> &[f64] {
+        &self.places
+    }
+
+    /// Replaces the samples, row by row.
+    pub(super) fn set(&mut self, f: impl Fn(usize, usize) -> DVec3) {
+        for (i, sample) in self.samples.iter_mut().enumerate() {
+            *sample = f(i / self.around, i % self.around);
+        }
+    }
+
+    /// Spaces the rows in u by their mean distances again.
+    pub(super) fn respace(&mut self) {
+        let rows: Vec<Vec<DVec3>> = self.rows().map(<[DVec3]>::to_vec).collect();
+        let mut total = 0.0;
+        for (i, place) in self.places.iter_mut().enumerate() {
+            total += if i == 0 { 0.0 } else { gap(&rows[i - 1], &rows[i]).0 };
+            *place = total;
+        }
+        for place in &mut self.places {
+            *place /= total;
+        }
+        self.length = total;
+    }
+
+    /// Row `i` of the stack for the cubic: beyond a pole the other side of the next loop, beyond an open end nothing.
+    fn row(&self, i: isize) -> Option<(f64, usize, usize)> {
+        let last = self.places.len() as isize - 1;
+        if i < 0 {
+            return (self.ends[0] == End::Closed)
+                .then(|| (-self.places[(-i) as usize], (-i) as usize, self.around / 2));
+        }
+        if i > last {
+            let j = (2 * last - i) as usize;
+            return (self.ends[1] == End::Closed).then(|| (2.0 - self.places[j], j, self.around / 2));
+        }
+        Some((self.places[i as usize], i as usize, 0))
+    }
+
+    /// Weights of up to four rows for point and slope at u.
+    fn weights(&self, u: f64) -> [(usize, usize, f64, f64); 4] {
+        let last = self.places.len() - 1;
+        let i = self.places.partition_point(|place| *place <= u).clamp(1, last) - 1;
+        let (start, end) = (self.places[i], self.places[i + 1]);
+        let width = end - start;
+        let t = (u - start) / width;
+        let row = |k: isize| self.row(i as isize + k);
+        let (before, after) = (row(-1), row(2));
+        // Hermite basis with slopes by the unit of u; beyond an open end the line goes on straight.
+        let (value, slope) = if (0.0..=1.0).contains(&t) {
+            let (t2, t3) = (t * t, t * t * t);
+            (
+                [
+                    2.0 * t3 - 3.0 * t2 + 1.0,
+                    (t3 - 2.0 * t2 + t) * width,
+                    3.0 * t2 - 2.0 * t3,
+                    (t3 - t2) * width,
+                ],
+                [
+                    (6.0 * t2 - 6.0 * t) / width,
+                    3.0 * t2 - 4.0 * t + 1.0,
+                    (6.0 * t - 6.0 * t2) / width,
+                    3.0 * t2 - 2.0 * t,
+                ],
+            )
+        } else if t < 0.0 {
+            ([1.0, u - start, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0])
+        } else {
+            ([0.0, 0.0, 1.0, u - end], [0.0, 0.0, 0.0, 1.0])
+        };
+        let mut rows =
+            [(i, 0, value[0], slope[0]), (i + 1, 0, value[2], slope[2]), (i, 0, 0.0, 0.0), (i, 0, 0.0, 0.0)];
+        // A slope is that of the parabola through three rows.
+        let mut add = |near: [f64; 3], outer: Option<(usize, usize)>, order: [usize; 2], at: usize| {
+            let [w_out, w_here, w_next] = near;
+            let (v, s) = (value[at], slope[at]);
+            rows[order[0]].2 += w_here * v;
+            rows[order[0]].3 += w_here * s;
+            rows[order[1]].2 += w_next * v;
+            rows[order[1]].3 += w_next * s;
+            if let Some((row, turn)) = outer {
+                let slot = if at == 1 { 2 } else { 3 };
+                rows[slot] = (row, turn, w_out * v, w_out * s);
+            }
+        };
+        match before {
+            Some((u0, row, turn)) => {
+                let (h0, h1) = (start - u0, width);
+                let sum = h0 + h1;
+                add([-h1 / (h0 * sum), (h1 - h0) / (h0 * h1), h0 / (h1 * sum)], Some((row, turn)), [0, 1], 1);
+            }
+            None => add([0.0, -1.0 / width, 1.0 / width], None, [0, 1], 1),
+        }
+        match after {
+            Some((u3, row, turn)) => {
+                let (h1, h2) = (width, u3 - end);
+                let sum = h1 + h2;
+                add([h1 / (h2 * sum), (h2 - h1) / (h1 * h2), -h2 / (h1 * sum)], Some((row, turn)), [1, 0], 3);
+            }
+            None => add([0.0, 1.0 / width, -1.0 / width], None, [1, 0], 3),
+        }
+        rows
+    }
+
+    fn eval(&self, u: f64, v: f64) -> Jet {
+        let count = self.around;
+        let scaled = (v - v.floor()) * count as f64;
+        let j = (scaled as usize).min(count - 1);
+        let t = scaled - j as f64;
+        let (t2, t3) = (t * t, t * t * t);
+        let along = [
+            0.5 * (2.0 * t2 - t - t3),
+            0.5 * (3.0 * t3 - 5.0 * t2 + 2.0),
+            0.5 * (t + 4.0 * t2 - 3.0 * t3),
+            0.5 * (t3 - t2),
+        ];
+        let per = 0.5 * count as f64;
+        let slope = [
+            per * (4.0 * t - 1.0 - 3.0 * t2),
+            per * (9.0 * t2 - 10.0 * t),
+            per * (1.0 + 8.0 * t - 9.0 * t2),
+            per * (3.0 * t2 - 2.0 * t),
+        ];
+        let mut jet = Jet::default();
+        for (row, turn, value, rise) in self.weights(u) {
+            if value == 0.0 && rise == 0.0 {
+                continue;
+            }
+            let base = row * count;
+            let first = j + turn + count - 1;
+            let (mut point, mut dv) = (DVec3::ZERO, DVec3::ZERO);
+            for k in 0..4 {
+                let sample = self.samples[base + (first + k) % count];
+                point += sample * along[k];
+                dv += sample * slope[k];
+            }
+            jet.point += point * value;
+            jet.du += point * rise;
+            jet.dv += dv * value;
+        }
+        jet
+    }
+}
+
+impl ParametricSurface for Stack {
+    fn point(&self, u: f64, v: f64) -> DVec3 {
+        self.eval(u, v).point
+    }
+    fn jet(&self, u: f64, v: f64) -> Jet {
+        self.eval(u, v)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math;
+    use crate::shape::measure;
+
+    #[test]
+    fn a_ball_of_loops_is_a_ball() {
+        let around = |k: u32, angle: f64| {
+            let (sin, cos) = math::sin_cos(-math::TAU * f64::from(k) / 256.0);
+            DVec3::new(cos * math::sin(angle), sin * math::sin(angle), -math::cos(angle)) * 20.0
+        };
+        let rings: Vec<Ring> = (1..20)
+            .map(|i| {
+                Ring::new((0..256).map(|k| around(k, math::PI * f64::from(i) / 20.0)).collect()).unwrap()
+            })
+            .collect();
+        let stack = Stack::new(&rings, [Some(DVec3::Z * -20.0), Some(DVec3::Z * 20.0)], 64).unwrap();
+        let area = measure::area(&stack, 40, 32);
+        assert!((area / (math::TAU * 2.0 * 400.0) - 1.0).abs() < 2e-3, "{area}");
+        for (u, v) in [(0.01, 0.1), (0.33, 0.6), (0.985, 0.9), (0.5, 0.0)] {
+            let jet = stack.jet(u, v);
+            assert!((jet.point.length() / 20.0 - 1.0).abs() < 2e-3, "{u} {v} {jet:?}");
+            assert!(jet.du.cross(jet.dv).dot(jet.point) > 0.0);
+            let step = 1e-6;
+            let slope = (stack.point(u + step, v) - stack.point(u - step, v)) / (2.0 * step);
+            assert!(slope.distance(jet.du) < 1e-4 * slope.length(), "{slope} {}", jet.du);
+            let slope = (stack.point(u, v + step) - stack.point(u, v - step)) / (2.0 * step);
+            assert!(slope.distance(jet.dv) < 1e-4 * slope.length().max(1.0), "{slope} {}", jet.dv);
+        }
+    }
+}

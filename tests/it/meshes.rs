@@ -1,0 +1,453 @@
+//! Meshes: what comes in as triangles goes out as tubes, and what is no surface is refused with its reason.
+
+use crate::solids::{Solid, capsule, circle, union};
+use glam::DVec3;
+use picot::diag::{Code, Diagnostic, Sink, Sources};
+use picot::frontend::{Input, Unit, mesh::Reading, mesh::Up, reader_for_extension};
+use picot::ir::verify::verify;
+use picot::ir::{Gauge, Program};
+use picot::math::{TAU, cos, sin};
+use picot::shape::{ParametricSurface, Shape};
+use picot::{Options, measure, read};
+use std::io;
+
+fn v(x: f64, y: f64, z: f64) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
+fn options(stitch: f64) -> Options {
+    let mesh = Reading { unit: Some(Unit::Mm), up: Some(Up::Z) };
+    Options { gauge: Some(Gauge::new(stitch, stitch)), mesh, ..Options::default() }
+}
+
+/// Reads a file of the given name.
+fn load(name: &str, bytes: &[u8], options: &Options) -> (Option<Shape>, Vec<Diagnostic>) {
+    load_beside(name, bytes, options, &|_| Err(io::ErrorKind::NotFound.into()))
+}
+
+fn load_beside(
+    name: &str,
+    bytes: &[u8],
+    options: &Options,
+    loader: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+) -> (Option<Shape>, Vec<Diagnostic>) {
+    let loader = |name: &str| loader(name);
+    let mut sources = Sources::new(&loader);
+    let source = sources.add(name, bytes.to_vec()).expect("small");
+    let mut sink = Sink::new();
+    let extension = name.rsplit('.').next().expect("an extension");
+    let reader = reader_for_extension(extension).expect("listed");
+    let shape = match read(&source, reader, options, &mut sources, &mut sink) {
+        Some(Input::Shape(shape)) => Some(*shape),
+        Some(_) => panic!("a mesh gave something else"),
+        None => None,
+    };
+    (shape, sink.take())
+}
+
+fn shape_of(solid: &Solid, stitch: f64) -> Shape {
+    let (shape, found) = load("solid.obj", &solid.obj(), &options(stitch));
+    shape.unwrap_or_else(|| panic!("{found:#?}"))
+}
+
+/// From a shape to a pattern that can be worked.
+fn pattern(shape: Shape, options: &Options) -> (Shape, Program) {
+    let mut sink = Sink::new();
+    let program = picot::program(&shape, options, &mut sink);
+    let program = program.unwrap_or_else(|| panic!("{:#?}", sink.diagnostics()));
+    assert!(verify(&program, &mut sink).is_some(), "{:#?}", sink.diagnostics());
+    (shape, program)
+}
+
+fn rounds(program: &Program) -> Vec<usize> {
+    let part = &program.pattern.parts[0];
+    let counts = part.rows.iter().flat_map(|row| {
+        let works = row.body.steps().filter(|step| matches!(step, picot::ir::Step::Work(_))).count();
+        std::iter::repeat_n(works, row.times as usize)
+    });
+    counts.collect()
+}
+
+fn stitches(program: &Program) -> usize {
+    rounds(program).iter().sum()
+}
+
+fn peanut(p: DVec3) -> f64 {
+    union(p.distance(v(0., 0., -20.)) - 20.0, p.distance(v(0., 0., 20.)) - 20.0, 15.0)
+}
+
+/// A tube of radius 15 along a quarter circle with straight legs, round at both ends.
+fn bent(p: DVec3) -> f64 {
+    let arc = (0..=32).map(|k| {
+        let angle = TAU / 4.0 * f64::from(k) / 32.0;
+        p.distance(v(50.0 - 50.0 * cos(angle), 0.0, 50.0 * sin(angle)))
+    });
+    let legs =
+        capsule(p, v(0., 0., -30.), DVec3::ZERO, 0.0).min(capsule(p, v(50., 0., 50.), v(80., 0., 50.), 0.0));
+    arc.fold(legs, f64::min) - 15.0
+}
+
+#[test]
+fn single_tubes_become_patterns_that_cover_them() {
+    let cases = [
+        ("ball", Solid::ball(30.0, 24)),
+        (
+            "ball of a grid",
+            Solid::level_set(|p| p.length() - 30.0, v(-33., -33., -33.), v(33., 33., 33.), 4.0),
+        ),
+        ("peanut", Solid::level_set(peanut, v(-24., -24., -44.), v(24., 24., 44.), 4.0)),
+        ("bent", Solid::level_set(bent, v(-19., -19., -49.), v(99., 19., 69.), 4.0)),
+    ];
+    for (name, solid) in cases {
+        let shape = shape_of(&solid, 5.0);
+        assert_eq!(shape.tubes.len(), 1, "{name}");
+        let (shape, program) = pattern(shape, &options(5.0));
+        let figures = measure(&shape, &program);
+        assert!((0.97..=1.03).contains(&figures.coverage), "{name}: {}", figures.coverage);
+        assert!(figures.length_error.chord.mean_abs < 0.07, "{name}: {:?}", figures.length_error.chord);
+    }
+}
+
+#[test]
+fn a_ball_of_triangles_is_worked_as_a_ball() {
+    let made = |solid: &Solid| rounds(&pattern(shape_of(solid, 5.0), &options(5.0)).1);
+    let smooth = made(&Solid::ball(30.0, 32));
+    let grid = made(&Solid::level_set(|p| p.length() - 30.0, v(-33., -33., -33.), v(33., 33., 33.), 4.0));
+    assert_eq!(smooth, grid);
+    assert_eq!(smooth[..4], [6, 12, 18, 24], "{smooth:?}");
+}
+
+/// The surface of a shape as triangles.
+fn triangles(surface: &dyn ParametricSurface, closed: [bool; 2]) -> Solid {
+    let rings: Vec<Vec<DVec3>> = (0..=80)
+        .filter(|k| !(closed[0] && *k == 0 || closed[1] && *k == 80))
+        .map(|k| (0..64).map(|j| surface.point(f64::from(k) / 80.0, -f64::from(j) / 64.0)).collect())
+        .collect();
+    let pole = |side: usize, u: f64| closed[side].then(|| surface.point(u, 0.0));
+    Solid::tube(&rings, [pole(0, 0.0), pole(1, 1.0)])
+}
+
+#[test]
+fn a_shape_file_and_its_mesh_agree() {
+    for name in ["ball", "capsule", "pear", "bottle"] {
+        let path = format!("{}/shapes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        #[expect(clippy::disallowed_methods, reason = "tests read their cases from the disk")]
+        let text = std::fs::read(path).expect("readable");
+        let shape = load("x.toml", &text, &Options::default()).0.expect("a sound file");
+        let closed = [shape.tubes[0].start, shape.tubes[0].end].map(|end| end == picot::shape::End::Closed);
+        let solid = triangles(&*shape.tubes[0].surface, closed);
+        let settings = Options { gauge: Some(shape.gauge), ..options(1.0) };
+        let cut = load("x.obj", &solid.obj(), &settings).0.expect("a sound mesh");
+        let (_, one) = pattern(shape, &Options::default());
+        let (_, other) = pattern(cut, &settings);
+        let (mut one, mut other) = (rounds(&one), rounds(&other));
+        // A mesh does not say at which end to begin.
+        let off = |a: &[usize], b: &[usize]| -> usize { a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).sum() };
+        let turned: Vec<usize> = other.iter().rev().copied().collect();
+        if off(&one, &turned) < off(&one, &other) {
+            other = turned;
+        }
+        let least = one.len().min(other.len());
+        assert!(one.len().abs_diff(other.len()) <= 1, "{name}: {one:?} {other:?}");
+        one.truncate(least);
+        other.truncate(least);
+        let share = off(&one, &other) as f64 / one.iter().sum::<usize>() as f64;
+        assert!(share < 0.03, "{name}: {one:?} {other:?}");
+    }
+}
+
+#[test]
+fn limbs_are_found() {
+    let y = |p: DVec3| {
+        let arms = union(
+            capsule(p, DVec3::ZERO, v(45., 0., 45.), 12.0),
+            capsule(p, DVec3::ZERO, v(-45., 0., 45.), 12.0),
+            8.0,
+        );
+        union(capsule(p, v(0., 0., -60.), DVec3::ZERO, 15.0), arms, 8.0)
+    };
+    let cross = |p: DVec3| {
+        union(
+            capsule(p, v(-60., 0., 0.), v(60., 0., 0.), 13.0),
+            capsule(p, v(0., 0., -60.), v(0., 0., 60.), 13.0),
+            10.0,
+        )
+    };
+    let teddy = |p: DVec3| {
+        let mut d =
+            union(capsule(p, v(0., 0., -10.), v(0., 0., 10.), 28.0), p.distance(v(0., 0., 55.)) - 24.0, 8.0);
+        for side in [-1.0, 1.0] {
+            d = union(d, capsule(p, v(side * 20., 0., 15.), v(side * 66., 0., -5.), 10.0), 6.0);
+            d = union(d, capsule(p, v(side * 14., 0., -25.), v(side * 24., 0., -80.), 12.0), 6.0);
+            d = union(d, capsule(p, v(side * 15., 0., 68.), v(side * 26., 0., 92.), 7.0), 5.0);
+        }
+        d
+    };
+    let cases: [(&str, Solid, usize); 3] = [
+        ("y", Solid::level_set(y, v(-60., -18., -78.), v(60., 18., 60.), 4.0), 3),
+        ("cross", Solid::level_set(cross, v(-76., -16., -76.), v(76., 16., 76.), 4.0), 4),
+        ("teddy", Solid::level_set(teddy, v(-80., -32., -95.), v(80., 32., 102.), 4.0), 6),
+    ];
+    for (name, solid, tips) in cases {
+        let shape = shape_of(&solid, 4.0);
+        let parents =
+            |i: usize| shape.tubes.iter().filter(|t| t.attachment.is_some_and(|a| a.parent == i)).count();
+        let ends = (0..shape.tubes.len()).filter(|i| parents(*i) == 0).count();
+        assert_eq!(ends + 1, tips, "{name}: {:?}", shape.tubes.iter().map(|t| &t.name).collect::<Vec<_>>());
+        for (i, tube) in shape.tubes.iter().enumerate() {
+            assert!(tube.attachment.is_none_or(|a| a.parent < i) && parents(i) != 1, "{name}");
+        }
+    }
+}
+
+#[test]
+fn every_format_gives_the_same() {
+    let solid = Solid::ball(30.0, 20);
+    let settings = options(5.0);
+    let counts = |name: &str, bytes: &[u8]| {
+        let (shape, found) = load(name, bytes, &settings);
+        rounds(&pattern(shape.unwrap_or_else(|| panic!("{name}: {found:#?}")), &settings).1)
+    };
+    let wanted = counts("ball.obj", &solid.obj());
+    assert_eq!(counts("ball.stl", &solid.stl()), wanted);
+    assert_eq!(counts("ball.stl", &solid.stl_text()), wanted);
+    assert_eq!(counts("ball.ply", &solid.ply()), wanted);
+    assert_eq!(counts("ball.ply", &solid.ply_binary()), wanted);
+    let plain = Options { mesh: Reading::default(), ..options(5.0) };
+    let (shape, found) = load("ball.glb", &solid.glb(), &plain);
+    let shape = shape.unwrap_or_else(|| panic!("{found:#?}"));
+    assert_eq!(rounds(&pattern(shape, &plain).1), wanted);
+    // A header that begins like a text file.
+    let mut header = solid.stl();
+    header[..5].copy_from_slice(b"solid");
+    assert_eq!(counts("ball.stl", &header), wanted);
+}
+
+fn codes(name: &str, bytes: &[u8]) -> Vec<&'static str> {
+    let (shape, found) = load(name, bytes, &options(5.0));
+    assert!(shape.is_none(), "{name} was taken");
+    assert!(found.iter().all(|it| !it.labels.is_empty() && it.help.is_some()), "{found:#?}");
+    found.iter().map(|it| it.code.as_str()).collect()
+}
+
+#[test]
+fn what_is_no_surface_is_refused() {
+    let torus = |p: DVec3, center: DVec3| {
+        let q = p - center;
+        v(v(q.x, q.y, 0.0).length() - 30.0, q.z, 0.0).length() - 10.0
+    };
+    let one = Solid::level_set(|p| torus(p, DVec3::ZERO), v(-42., -42., -12.), v(42., 42., 12.), 4.0);
+    assert_eq!(codes("torus.obj", &one.obj()), ["E4104"]);
+    let two = |p: DVec3| union(torus(p, v(-36., 0., 0.)), torus(p, v(36., 0., 0.)), 6.0);
+    let two = Solid::level_set(two, v(-80., -44., -14.), v(80., 44., 14.), 4.0);
+    let (_, found) = load("two.obj", &two.obj(), &options(5.0));
+    assert!(found[0].message.contains("2 handles"), "{found:#?}");
+    let apart = Solid::ball(20.0, 12).and(&Solid::ball(10.0, 8).moved(v(60., 0., 0.)));
+    assert_eq!(codes("two.obj", &apart.obj()), ["E4102"]);
+
+    // A flat grid with its middle cut out, and a ball without one face.
+    let mut sheet = Solid::default();
+    for j in 0..=12_u32 {
+        sheet.points.extend((0..=12_u32).map(|i| v(f64::from(i) * 10.0, f64::from(j) * 10.0, 0.0)));
+    }
+    for (i, j) in (0..12).flat_map(|j| (0..12).map(move |i| (i, j))) {
+        if !((4..8).contains(&i) && (4..8).contains(&j)) {
+            let a = j * 13 + i;
+            sheet.faces.extend([[a, a + 1, a + 14], [a, a + 14, a + 13]]);
+        }
+    }
+    assert_eq!(codes("sheet.obj", &sheet.obj()), ["E4105"]);
+    let mut open = Solid::ball(30.0, 24);
+    open.faces.remove(400);
+    assert_eq!(codes("ball.obj", &open.obj()), ["E4105"]);
+
+    let mut strip = Solid::default();
+    for i in 0..40_u32 {
+        let angle = TAU * f64::from(i) / 40.0;
+        let (arm, up) = (v(cos(angle), sin(angle), 0.0), DVec3::Z);
+        let across = arm * (10.0 * cos(angle / 2.0)) + up * (10.0 * sin(angle / 2.0));
+        strip.points.extend([arm * 40.0 - across, arm * 40.0 + across]);
+        let (a, b) = (2 * i, 2 * (i + 1));
+        let [c, d] = if i == 39 { [1, 0] } else { [b, b + 1] };
+        strip.faces.extend([[a, a + 1, c], [c, a + 1, d]]);
+    }
+    assert_eq!(codes("moebius.obj", &strip.obj()), ["E4103"]);
+
+    let mut wall = Solid::ball(20.0, 12);
+    let [a, b, _] = wall.faces[30];
+    wall.points.push(DVec3::ZERO);
+    wall.faces.push([a, b, wall.points.len() as u32 - 1]);
+    assert_eq!(codes("wall.obj", &wall.obj()), ["E4101"]);
+    let touching = Solid::ball(20.0, 12).and(&Solid::ball(20.0, 12).moved(v(0., 0., 40.)));
+    assert_eq!(codes("touch.obj", &touching.obj()), ["E4102"]);
+}
+
+#[test]
+fn what_can_be_repaired_is_repaired() {
+    let sound = Solid::ball(30.0, 20);
+    let wanted = rounds(&pattern(shape_of(&sound, 5.0), &options(5.0)).1);
+    let mut worn = sound.clone();
+    worn.faces.iter_mut().step_by(3).for_each(|face| face.swap(0, 1));
+    worn.faces.push([5, 5, 9]);
+    worn.faces.push(worn.faces[7]);
+    let (shape, found) = load("worn.obj", &worn.obj(), &options(5.0));
+    let repaired: Vec<_> = found.iter().filter(|it| it.code == Code::MeshRepaired).collect();
+    assert_eq!(repaired.len(), 1, "{found:#?}");
+    for word in ["1 face without an area", "stood twice", "turned to agree"] {
+        assert!(repaired[0].message.contains(word), "{}", repaired[0].message);
+    }
+    assert_eq!(rounds(&pattern(shape.expect("repaired"), &options(5.0)).1), wanted);
+    let mut inward = sound;
+    inward.faces.iter_mut().for_each(|face| face.swap(0, 1));
+    let (_, found) = load("inward.obj", &inward.obj(), &options(5.0));
+    assert!(found.iter().any(|it| it.message.contains("look outward")), "{found:#?}");
+}
+
+#[test]
+fn broken_files_are_refused_at_once() {
+    for (name, bytes, code) in [
+        ("a.obj", &b"v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n"[..], "E4003"),
+        ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "E4002"),
+        ("a.obj", b"v 0 0 0\nv 1 0\nf 1 1 1\n", "E4001"),
+        ("a.obj", b"# nothing\n", "E4004"),
+        ("a.obj", b"", "E4004"),
+        ("a.obj", b"\x00\x01\x02", "E4001"),
+        ("a.stl", b"", "E4001"),
+        ("a.stl", b"solid", "E4001"),
+        ("a.ply", b"plx\n", "E4001"),
+        (
+            "a.ply",
+            b"ply\nformat ascii 1.0\nelement vertex 1000000000\nproperty float x\nend_header\n",
+            "E4001",
+        ),
+        ("a.glb", b"glTF\x02\0\0\0\x04\0\0\0", "E4001"),
+        ("a.gltf", b"{", "E4001"),
+    ] {
+        assert_eq!(codes(name, bytes), [code], "{name} {:?}", String::from_utf8_lossy(bytes));
+    }
+    let mut claim = vec![0; 84];
+    claim[80..].copy_from_slice(&1_000_000_000_u32.to_le_bytes());
+    claim.resize(100, 0);
+    assert_eq!(codes("a.stl", &claim), ["E4001"]);
+    let without = load("a.obj", &Solid::ball(20.0, 8).obj(), &Options::default());
+    assert_eq!(without.1[0].code, Code::GaugeMissing);
+}
+
+#[test]
+fn no_bytes_break_the_readers() {
+    let solid = Solid::ball(20.0, 5);
+    let files = [
+        ("a.obj", solid.obj()),
+        ("a.stl", solid.stl()),
+        ("a.stl", solid.stl_text()),
+        ("a.ply", solid.ply()),
+        ("a.ply", solid.ply_binary()),
+        ("a.glb", solid.glb()),
+    ];
+    let mut seed = 7_u32;
+    let mut random = |below: usize| {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (seed >> 8) as usize % below
+    };
+    for (name, bytes) in files {
+        for _ in 0..150 {
+            let mut bytes = bytes.clone();
+            for _ in 0..=random(3) {
+                let at = random(bytes.len());
+                match random(4) {
+                    0 => bytes.truncate(at.max(1)),
+                    1 => bytes[at] = random(256) as u8,
+                    2 => bytes[at] = b"09.- \n{}\""[random(9)],
+                    _ => drop(bytes.splice(at..at, [0xFF; 4])),
+                }
+            }
+            load(name, &bytes, &options(5.0));
+        }
+    }
+}
+
+#[test]
+fn a_shape_file_names_its_mesh_and_how_to_cut_it() {
+    let solid = Solid::level_set(bent, v(-19., -19., -49.), v(99., 19., 69.), 4.0);
+    let file = solid.obj();
+    let loader = move |name: &str| {
+        if name == "folder/bent.obj" { Ok(file.clone()) } else { Err(io::ErrorKind::NotFound.into()) }
+    };
+    let head = "unit = \"mm\"\n[gauge]\nstitch = { width = 5, height = 5 }\n[mesh]\nfile = \"bent.obj\"\n";
+    let build = |rest: &str| {
+        load_beside("folder/x.toml", format!("{head}{rest}").as_bytes(), &Options::default(), &loader)
+    };
+    let count = |rest: &str| {
+        let (shape, found) = build(rest);
+        let shape = shape.unwrap_or_else(|| panic!("{rest}: {found:#?}"));
+        let (shape, program) = pattern(shape, &Options::default());
+        let coverage = measure(&shape, &program).coverage;
+        assert!((0.96..=1.04).contains(&coverage), "{rest}: {coverage}");
+        (stitches(&program) as f64, shape.tubes[0].surface.point(0.0, 0.0))
+    };
+    let (harmonic, start) = count("");
+    assert!(start.z < -40.0, "{start}");
+    let (geodesic, _) = count("field = \"geodesic\"");
+    let (plane, _) = count(
+        "field = \"plane\"\ncurve = [[[0, 0, -45], [0, 0, 0]], [[0, 0, 0], [0, 0, 27.6], [22.4, 0, 50], [50, 0, 50]], [[50, 0, 50], [95, 0, 50]]]",
+    );
+    let (named, other) = count("start = [95, 0, 50]\npoles = [[0, 0, -45]]");
+    assert!(other.x > 90.0, "{other}");
+    for number in [geodesic, plane, named] {
+        assert!((number / harmonic - 1.0).abs() < 0.1, "{harmonic} {number}");
+    }
+    let codes = |rest: &str| build(rest).1.iter().map(|it| it.code.as_str()).collect::<Vec<_>>();
+    assert_eq!(codes("field = \"plane\""), ["E1003"]);
+    assert_eq!(codes("field = \"plain\""), ["E1005"]);
+    assert_eq!(codes("poles = [[1, 2]]"), ["E1010"]);
+    assert_eq!(codes("field = \"plane\"\ncurve = [[0, 0, 200], [0, 0, 300]]"), ["E4106"]);
+    let missing =
+        load_beside("x.toml", head.as_bytes(), &Options::default(), &|_| Err(io::ErrorKind::NotFound.into()));
+    assert_eq!(missing.1[0].code, Code::FileFails);
+}
+
+#[test]
+fn blobs_become_tubes() {
+    let mut seed = 11_u32;
+    let mut random = |low: f64, high: f64| {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        low + (high - low) * f64::from(seed >> 8) / f64::from(1 << 24)
+    };
+    for round in 0..50 {
+        // A ball with arms in directions far from each other.
+        let count = round % 4;
+        let mut arms: Vec<(DVec3, f64)> = Vec::new();
+        while arms.len() < count {
+            let arm = v(random(-1., 1.), random(-1., 1.), random(-1., 1.)).normalize_or_zero();
+            if arm != DVec3::ZERO && arms.iter().all(|(other, _)| other.dot(arm) < 0.2) {
+                arms.push((arm, random(8.0, 11.0)));
+            }
+        }
+        let body = random(20.0, 24.0);
+        let formula = |p: DVec3| {
+            arms.iter().fold(p.length() - body, |d, (arm, radius)| {
+                union(d, capsule(p, DVec3::ZERO, *arm * 50.0, *radius), 8.0)
+            })
+        };
+        let solid = Solid::level_set(formula, DVec3::splat(-63.0), DVec3::splat(63.0), 4.5);
+        let shape = shape_of(&solid, 4.0);
+        let parents =
+            |i: usize| shape.tubes.iter().filter(|t| t.attachment.is_some_and(|a| a.parent == i)).count();
+        let ends = 1 + (0..shape.tubes.len()).filter(|i| parents(*i) == 0).count();
+        // The side of the body that no arm grows from may stand out, too.
+        let wanted = count.max(2)..=count.max(1) + 1;
+        assert!(wanted.contains(&ends), "blob {round} with {count} arms has {ends} ends");
+    }
+}
+
+#[test]
+fn openings_are_ends() {
+    let rings: Vec<Vec<DVec3>> = (0..16).map(|i| circle(20.0, 4.0 * f64::from(i), 24)).collect();
+    let shape = shape_of(&Solid::tube(&rings, [None, None]), 5.0);
+    assert_eq!(
+        (shape.tubes.len(), shape.tubes[0].start, shape.tubes[0].end),
+        (1, Default::default(), Default::default())
+    );
+    let cup = shape_of(&Solid::tube(&rings, [None, Some(v(0., 0., 62.))]), 5.0);
+    assert_eq!((cup.tubes[0].start, cup.tubes[0].end), (picot::shape::End::Open, picot::shape::End::Closed));
+}
