@@ -7,7 +7,7 @@ use picot::frontend::{Input, Unit, mesh::Reading, mesh::Up, reader_for_extension
 use picot::ir::verify::verify;
 use picot::ir::{Gauge, Program};
 use picot::math::{TAU, cos, sin};
-use picot::shape::{ParametricSurface, Shape};
+use picot::shape::{End, ParametricSurface, Shape};
 use picot::{Options, measure, read};
 use std::io;
 
@@ -134,7 +134,7 @@ fn a_shape_file_and_its_mesh_agree() {
         #[expect(clippy::disallowed_methods, reason = "tests read their cases from the disk")]
         let text = std::fs::read(path).expect("readable");
         let shape = load("x.toml", &text, &Options::default()).0.expect("a sound file");
-        let closed = [shape.tubes[0].start, shape.tubes[0].end].map(|end| end == picot::shape::End::Closed);
+        let closed = [shape.tubes[0].start, shape.tubes[0].end].map(|end| end == End::Closed);
         let solid = triangles(&*shape.tubes[0].surface, closed);
         let settings = Options { gauge: Some(shape.gauge), ..options(1.0) };
         let cut = load("x.obj", &solid.obj(), &settings).0.expect("a sound mesh");
@@ -444,10 +444,7 @@ fn blobs_become_tubes() {
 fn openings_are_ends() {
     let rings: Vec<Vec<DVec3>> = (0..16).map(|i| circle(20.0, 4.0 * f64::from(i), 24)).collect();
     let shape = shape_of(&Solid::tube(&rings, [None, None]), 5.0);
-    assert_eq!(
-        (shape.tubes.len(), shape.tubes[0].start, shape.tubes[0].end),
-        (1, Default::default(), Default::default())
-    );
+    assert_eq!((shape.tubes.len(), shape.tubes[0].start, shape.tubes[0].end), (1, End::Open, End::Open));
     let cup = shape_of(&Solid::tube(&rings, [None, Some(v(0., 0., 62.))]), 5.0);
-    assert_eq!((cup.tubes[0].start, cup.tubes[0].end), (picot::shape::End::Open, picot::shape::End::Closed));
+    assert_eq!((cup.tubes[0].start, cup.tubes[0].end), (End::Open, End::Closed));
 }
