@@ -55,8 +55,10 @@ use frontend::crochet::{self, Conventions};
 use frontend::mesh;
 use frontend::{Input, Reader};
 use generate::capunaman::Baseline;
+use ir::verify::Verified;
 use ir::{Finish, Gauge, Graph, Part, PartId, Pattern, Program};
 use metrics::{Measure, Mesh, Sampler};
+use preview::{Refused, predict};
 use rayon::prelude::*;
 use shape::{Attachment, End, Joint, Shape, Tube};
 
@@ -242,4 +244,12 @@ fn baseline_of<'s>(gauge: &Gauge, nets: impl Iterator<Item = (&'s Tube, &'s Base
         sampler.note(counts.increases, counts.decreases, counts.crossings);
     }
     sampler.finish()
+}
+
+/// Predicts the shape of a program from its pattern alone, and compares it with the shape that it was generated from.
+/// `None` for a program without graphs or gauge.
+pub fn predict(program: &Verified<'_>, sink: &Sink<'_>) -> Result<Option<predict::Fit>, Refused> {
+    sink.stage("predict");
+    let Some(gauge) = program.gauge else { return Ok(None) };
+    predict::fit(program, [gauge.width, gauge.height], sink)
 }

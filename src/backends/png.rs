@@ -38,12 +38,13 @@ const BUDGET: u64 = 2_000_000;
 const BACKGROUND: [u8; 3] = [246, 243, 238];
 
 impl Backend for Png {
-    fn emit(&self, program: &Verified<'_>, out: &mut dyn Write, _: &mut Sink<'_>) -> Result<(), Error> {
+    fn emit(&self, program: &Verified<'_>, out: &mut dyn Write, sink: &mut Sink<'_>) -> Result<(), Error> {
         let refused = |what: crate::preview::Refused| Error::Unsupported {
             backend: Self::NAME,
             what: what.to_string(),
         };
-        let scene = Scene::new(program, self.yarn).map_err(refused)?;
+        let scene = Scene::new(program, self.yarn, sink).map_err(refused)?;
+        scene.remark(sink);
         let mesh = Mesh::of(&scene, self.view, self.detail, BUDGET).map_err(refused)?;
         let camera = Camera { azimuth: self.azimuth, elevation: self.elevation };
         let picture = picture(&scene, &mesh, self.view, camera, self.size, BACKGROUND).map_err(refused)?;

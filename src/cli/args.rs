@@ -13,6 +13,12 @@ Examples:
   picot build shapes/ball.toml -o ball.txt -o ball.json
 ";
 
+const PREVIEWS: &str = "\
+Examples:
+  picot preview shapes/ball.toml -o ball.png
+  picot preview frog.txt -o frog.png                       a written pattern; its shape is predicted
+  picot preview goose.toml -o goose.png --set view=wireframe --set size=1600x1200 --set azimuth=80";
+
 /// Compiles 3D shapes to textile instructions.
 #[derive(Debug, Parser)]
 #[command(name = "picot", version, arg_required_else_help = true, after_help = EXAMPLES, max_term_width = 100)]
@@ -49,6 +55,9 @@ pub(crate) enum Color {
 pub(crate) enum Command {
     /// Compile a shape to a pattern and other outputs
     Build(Build),
+    /// Draw what comes out
+    #[command(after_help = PREVIEWS)]
+    Preview(Build),
     /// Check patterns and machine programs
     Check(Check),
     /// Rewrite written patterns in canonical form
@@ -183,6 +192,9 @@ pub(crate) struct Measure {
     /// Who lays the stitches
     #[arg(long, value_name = "NAME", default_value = "picot")]
     pub(crate) algorithm: Algorithm,
+    /// Predict the shape from the pattern alone, and tell how far it is from the target
+    #[arg(long)]
+    pub(crate) predict: bool,
     #[command(flatten)]
     pub(crate) reading: Reading,
 }

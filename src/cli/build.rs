@@ -81,6 +81,22 @@ pub(crate) fn run(arguments: &Build, report: Report) -> Result<Status, Failure> 
     Ok(Status::Fine)
 }
 
+/// Targets that are looked at.
+const PREVIEWS: [&str; 5] = ["html", "png", "stl", "gltf", "obj"];
+
+/// `picot preview`: a build to what is looked at.
+pub(crate) fn preview(arguments: &Build, report: Report) -> Result<Status, Failure> {
+    if arguments.output.is_empty() {
+        return Err(Failure::usage("a preview needs a file").help("add -o FILE.png"));
+    }
+    let plan = plan(arguments)?;
+    if let Some(target) = plan.targets.iter().find(|target| !PREVIEWS.contains(&target.name)) {
+        return Err(Failure::usage(format!("{} is no preview", target.name))
+            .help(format!("`picot build` writes .{}", target.extension)));
+    }
+    run(arguments, report)
+}
+
 /// One input through all stages to the bytes of its outputs.
 fn compile(
     job: &Job,

@@ -12,6 +12,7 @@ use picot::frontend::Input;
 use picot::generate::capunaman::Baseline;
 use picot::ir::verify::verify;
 use picot::metrics::{Measure, Readability, Stats};
+use picot::preview::predict::Fit;
 use picot::shape::Shape;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -26,9 +27,14 @@ pub(crate) struct Measured {
     pub(crate) readability: Option<Readability>,
     /// The first round that cannot be worked, with 0 for one that is not known.
     pub(crate) unworkable: Option<u64>,
+    /// How far the predicted shape is from the target, or why there is none.
+    pub(crate) predicted: Option<Result<Fit, String>>,
 }
 
 pub(crate) fn run(arguments: &Arguments, report: Report) -> Result<Status, Failure> {
+    if arguments.predict && arguments.algorithm != Algorithm::Picot {
+        return Err(Failure::usage("only patterns by picot can be predicted").help("leave out --algorithm"));
+    }
     let reader = reader_of(&arguments.input, arguments.reading.from.as_deref())?;
     let routed = route(&arguments.reading, &[])?;
     let stdin = files::stdin_if_named([&arguments.input].into_iter())?;
@@ -40,7 +46,8 @@ pub(crate) fn run(arguments: &Arguments, report: Report) -> Result<Status, Failu
     let input = picot::read(&source, reader, &routed.options, &mut sources, &mut sink);
     let measured = match &input {
         Some(Input::Shape(shape)) => {
-            measure(shape, arguments.algorithm, &routed.options, &mut sink).map(|measured| (shape, measured))
+            measure(shape, arguments.algorithm, arguments.predict, &routed.options, &mut sink)
+                .map(|measured| (shape, measured))
         }
         Some(other @ (Input::Program(_) | Input::Code(_))) => {
             let what = if matches!(other, Input::Code(_)) { "machine code" } else { "a pattern" };
@@ -65,6 +72,7 @@ pub(crate) fn run(arguments: &Arguments, report: Report) -> Result<Status, Failu
 pub(crate) fn measure(
     shape: &Shape,
     algorithm: Algorithm,
+    predict: bool,
     options: &picot::Options,
     sink: &mut Sink<'_>,
 ) -> Option<Measured> {
@@ -73,7 +81,13 @@ pub(crate) fn measure(
             let program = picot::program(shape, options, sink)?;
             sink.stage("verify");
             let mut findings = Sink::new();
-            let workable = verify(&program, &mut findings).is_some();
+            let verified = verify(&program, &mut findings);
+            let workable = verified.is_some();
+            let fit = |verified| match picot::predict(&verified, sink) {
+                Ok(fit) => fit.ok_or_else(|| "there is nothing to compare".to_owned()),
+                Err(refused) => Err(refused.to_string()),
+            };
+            let predicted = verified.filter(|_| predict).map(fit);
             let round = findings.diagnostics().iter().find_map(|finding| finding.place.as_ref()?.round);
             for finding in findings.take() {
                 sink.push(finding);
@@ -89,6 +103,7 @@ pub(crate) fn measure(
                 rounds: rounds(&program),
                 readability: Some(Readability::of(&program.pattern, &program.graphs)),
                 unworkable: (!workable).then(|| u64::from(round.unwrap_or(0))),
+                predicted,
             })
         }
         Algorithm::Capunaman => {
@@ -104,6 +119,7 @@ pub(crate) fn measure(
                 rounds: nets.iter().map(baseline_rounds).sum(),
                 readability: None,
                 unworkable: nets.iter().find_map(Baseline::unworkable_row).map(|row| row as u64),
+                predicted: None,
             })
         }
     }
@@ -162,6 +178,16 @@ pub(crate) fn facts(measured: &Measured) -> Result<Value, Failure> {
         parts.push(part);
     }
     value["parts"] = parts.into();
+    if let Some(predicted) = &measured.predicted {
+        value["predict"] = match predicted {
+            Ok(fit) if fit.rest.converged => json!({
+                "converged": true, "chamfer": fit.chamfer, "hausdorff": fit.hausdorff, "rms": fit.rms,
+                "residual": fit.rest.residual, "strain": fit.rest.strain, "steps": fit.rest.steps,
+            }),
+            Ok(fit) => json!({ "converged": false, "residual": fit.rest.residual, "steps": fit.rest.steps }),
+            Err(why) => json!({ "converged": false, "refused": why }),
+        };
+    }
     if let Some(readability) = &measured.readability {
         value["readability"] = serde_json::to_value(readability).map_err(wrong)?;
     }
@@ -258,6 +284,23 @@ fn table(
             100.0 * read.stacked_increases
         );
     }
+    let _ = match &measured.predicted {
+        None => Ok(()),
+        Some(Ok(fit)) if fit.rest.converged => writeln!(
+            text,
+            "predicted {:.2} stitch heights from the target in the mean, {:.2} at most (residual {:.1e}, strain {:.1} %)",
+            fit.chamfer,
+            fit.hausdorff,
+            fit.rest.residual,
+            100.0 * fit.rest.strain
+        ),
+        Some(Ok(fit)) => writeln!(
+            text,
+            "predicted not converged (residual {:.1e} after {} steps)",
+            fit.rest.residual, fit.rest.steps
+        ),
+        Some(Err(why)) => writeln!(text, "predicted no: {why}"),
+    };
     let workable = match measured.unworkable {
         None => "yes".to_owned(),
         Some(0) => "no".to_owned(),

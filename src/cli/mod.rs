@@ -106,6 +106,7 @@ pub(crate) fn main() -> ExitCode {
     let report = report::Report::new(&cli.global);
     let outcome = match &cli.command {
         Command::Build(arguments) => build::run(arguments, report),
+        Command::Preview(arguments) => build::preview(arguments, report),
         Command::Check(arguments) => check::run(arguments, report),
         Command::Fmt(arguments) => fmt::run(arguments, report),
         Command::Measure(arguments) => measure::run(arguments, report),

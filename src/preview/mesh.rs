@@ -4,6 +4,7 @@ use super::scene::{Refused, Scene, Stitch};
 use super::sweep;
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
+use std::ops::Range;
 
 /// What is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -44,7 +45,7 @@ impl Detail {
 }
 
 /// Most triangles that are ever made.
-pub const MAX_TRIANGLES: u64 = 16_000_000;
+pub const MAX_TRIANGLES: u64 = 12_000_000;
 
 /// A closed, consistently oriented surface: normals point outward, triangles turn left seen from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -59,6 +60,17 @@ pub struct Mesh {
     pub twist: Vec<f32>,
     /// Corners of the triangles.
     pub triangles: Vec<[u32; 3]>,
+    /// What belongs to each piece of the scene.
+    pub pieces: Vec<Part>,
+}
+
+/// The vertices and triangles of one piece.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Part {
+    /// Range of the vertices.
+    pub vertices: Range<usize>,
+    /// Range of [`Mesh::triangles`].
+    pub triangles: Range<usize>,
 }
 
 impl Mesh {
@@ -78,9 +90,20 @@ impl Mesh {
         let mut mesh = Self::default();
         mesh.reserve((triangles / 2) as usize, triangles as usize);
         for piece in &scene.pieces {
+            let from = mesh.ends();
             sweep::tube(&piece.yarn, scene.yarn, detail, &mut mesh);
+            mesh.part(from);
         }
         Ok(mesh)
+    }
+
+    fn ends(&self) -> [usize; 2] {
+        [self.positions.len(), self.triangles.len()]
+    }
+
+    fn part(&mut self, [vertices, triangles]: [usize; 2]) {
+        let to = self.ends();
+        self.pieces.push(Part { vertices: vertices..to[0], triangles: triangles..to[1] });
     }
 
     fn reserve(&mut self, vertices: usize, triangles: usize) {
@@ -94,8 +117,14 @@ impl Mesh {
     fn tiles(scene: &Scene) -> Self {
         let mut mesh = Self::default();
         mesh.reserve(scene.stitches.len() * 24, scene.stitches.len() * 12);
-        for (index, stitch) in scene.stitches.iter().enumerate() {
-            mesh.tile(stitch, index as u32);
+        for piece in &scene.pieces {
+            let from = mesh.ends();
+            for index in piece.stitches.clone() {
+                if let Some(stitch) = scene.stitches.get(index) {
+                    mesh.tile(stitch, index as u32);
+                }
+            }
+            mesh.part(from);
         }
         mesh
     }
@@ -122,7 +151,7 @@ impl Mesh {
             if volume > 0.0 {
                 face.reverse();
             }
-            let normal = (face[2] - face[0]).cross(face[3] - face[1]).normalize_or_zero();
+            let normal = (face[2] - face[0]).cross(face[3] - face[1]).normalize_or(Vec3::Z);
             let first = self.positions.len() as u32;
             for corner in face {
                 self.vertex(corner, normal, index);

@@ -1,13 +1,16 @@
 //! What the object will look like: tiles and yarn in space, for pictures, models and the page.
 //!
 //! A [`Scene`] holds each stitch with the eight corners of its tile and each piece's yarn as one continuous line from
-//! the first stitch to the last. Positions are those of the stitch graph.
+//! the first stitch to the last. Positions are those of the stitch graph; a pattern without graph is
+//! [predicted](predict).
 
 mod camera;
 mod frame;
 mod mesh;
 mod net;
+pub mod predict;
 mod raster;
+mod remark;
 mod scene;
 mod shade;
 mod stitch;

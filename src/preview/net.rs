@@ -68,7 +68,11 @@ pub(super) struct Net {
     /// Loops held for other parts.
     held: BTreeMap<PartId, VecDeque<u32>>,
     /// Another part starts from its open loops.
-    taken: bool,
+    pub(super) taken: bool,
+    /// Worked in rows that turn.
+    pub(super) flat: bool,
+    /// For each of `rings` the number of steps before it.
+    pub(super) cuts: Vec<u32>,
 }
 
 /// The loops of every piece of a program, in working order of its parts. Copies beyond `most` in all are left out.
@@ -120,6 +124,8 @@ impl Walk {
             shared: Vec::new(),
             held: BTreeMap::new(),
             taken: false,
+            flat: part.flat,
+            cuts: Vec::new(),
         };
         let mut walk = Self {
             net,
@@ -134,14 +140,13 @@ impl Walk {
         walk.begin(part, nets);
         for (row, (number, body)) in part.numbered_rows().enumerate() {
             for done in 0..body.times {
-                let ring = walk.ready();
-                walk.net.rings.push(ring);
+                walk.cut();
                 walk.row(&body.body, row as u32, number.saturating_add(done));
                 walk.row_ends(part.flat);
             }
         }
         walk.net.open = walk.ready();
-        walk.net.rings.push(walk.net.open.clone());
+        walk.cut();
         if part.finish == Finish::DrawnShut {
             for id in walk.net.open.clone() {
                 let base = walk.base(&[id]);
@@ -310,6 +315,13 @@ impl Walk {
         self.place = NONE;
     }
 
+    /// Notes what lies ready between two rows.
+    fn cut(&mut self) {
+        let ring = self.ready();
+        self.net.rings.push(ring);
+        self.net.cuts.push(self.net.worked.len() as u32);
+    }
+
     /// The loops ahead, in course direction of the fabric.
     fn ready(&self) -> Vec<u32> {
         let mut ready: Vec<u32> = self.ahead.iter().copied().collect();
@@ -359,6 +371,14 @@ impl Walk {
 }
 
 impl Net {
+    /// True when it starts with stitches in a magic ring.
+    pub(super) fn has_ring(&self) -> bool {
+        self.worked.first().is_some_and(|step| step.role == Role::Ring)
+    }
+    /// True when its end is drawn shut.
+    pub(super) fn is_shut(&self) -> bool {
+        self.worked.last().is_some_and(|step| step.role == Role::Close)
+    }
     /// The loops that a step is worked into, in course direction.
     pub(super) fn base(&self, step: &Worked) -> &[u32] {
         self.bases.get(step.base.start as usize..step.base.end as usize).unwrap_or_default()

@@ -2,8 +2,10 @@
 
 use super::frame::{Frames, Point, ring_radius};
 use super::net::{NONE, Net, Role, Worked, nets};
+use super::predict::{self, Rest};
 use super::stitch as keys;
 use super::yarn::Yarn;
+use crate::diag::Sink;
 use crate::ir::verify::Verified;
 use crate::ir::yarn::Yarn as Weight;
 use crate::ir::{Direction, Gauge, GaugeOrigin, Graph, Kind, PartId, Program};
@@ -11,7 +13,7 @@ use glam::DVec3;
 use std::ops::Range;
 
 /// Most stitches that a scene holds.
-pub const MAX_STITCHES: u64 = 400_000;
+pub const MAX_STITCHES: u64 = 300_000;
 /// The stitch of a pattern that does not tell its own: worsted yarn on a small hook, in mm.
 pub const DEFAULT_GAUGE: [f64; 2] = [5.0, 4.25];
 
@@ -85,6 +87,8 @@ pub struct Scene {
     pub yarn: f64,
     /// Thickness of the fabric in mm.
     pub thickness: f64,
+    /// How the prediction went, where positions are predicted.
+    pub predicted: Option<Rest>,
     /// Colors as red, green, blue.
     pub colors: Vec<[u8; 3]>,
     /// The pieces in working order.
@@ -126,9 +130,15 @@ pub enum Refused {
     /// No picture has this size.
     #[error("a picture is 1 to {} pixels wide and high; set `size` to WIDTHxHEIGHT", super::shade::MAX_SIDE)]
     PictureSize,
-    /// A written pattern.
-    #[error("a written pattern does not tell where its stitches lie")]
-    NoGraph,
+    /// Too wide a piece to predict its shape.
+    #[error("{stitches} stitches in rounds this wide are too many to predict a shape for")]
+    TooWide {
+        /// How many there are.
+        stitches: u64,
+    },
+    /// The forces have no solution.
+    #[error("the shape cannot be predicted from this pattern")]
+    NotPredicted,
     /// The pattern has nothing to draw.
     #[error("the pattern has no stitches to draw")]
     Empty,
@@ -140,14 +150,12 @@ const YARN_OF_WIDTH: f64 = 0.30;
 const LAYERS: f64 = 2.6;
 
 impl Scene {
-    /// Builds the scene of a program; `yarn` is a thickness in mm that takes the place of the gauge's own.
-    pub fn new(program: &Verified<'_>, yarn: Option<f64>) -> Result<Self, Refused> {
+    /// Builds the scene of a program; `yarn` is a thickness in mm that takes the place of the gauge's own. The shape of
+    /// a pattern without graphs is predicted, which the sink hears of.
+    pub fn new(program: &Verified<'_>, yarn: Option<f64>, sink: &Sink<'_>) -> Result<Self, Refused> {
         let stitches = program.facts().stitches(program);
         if stitches > MAX_STITCHES {
             return Err(Refused::TooLarge { stitches });
-        }
-        if program.graphs.is_empty() {
-            return Err(Refused::NoGraph);
         }
         let nets = nets(program, MAX_STITCHES);
         let gauge = program.gauge.map_or(DEFAULT_GAUGE, |gauge| [gauge.width, gauge.height]);
@@ -157,6 +165,7 @@ impl Scene {
             gauge_assumed: program.gauge.is_none(),
             yarn: 0.0,
             thickness: 0.0,
+            predicted: None,
             colors: colors(program),
             pieces: Vec::new(),
             stitches: Vec::new(),
@@ -164,8 +173,15 @@ impl Scene {
         scene.yarn = yarn.unwrap_or_else(|| thickness(program.gauge, gauge[0]));
         scene.yarn = scene.yarn.clamp(0.05 * gauge[0].min(gauge[1]), 0.40 * gauge[0].min(gauge[1]));
         scene.thickness = LAYERS * scene.yarn;
-        let graphs = program.graphs.iter();
-        for (net, graph) in nets.iter().zip(graphs) {
+        if program.graphs.is_empty() {
+            sink.stage("predict");
+            let (places, rest) = predict::places(&nets, gauge, sink)?;
+            scene.predicted = Some(rest);
+            for (net, places) in nets.iter().zip(&places) {
+                scene.add(program, net, places, None)?;
+            }
+        }
+        for (net, graph) in nets.iter().zip(&program.graphs) {
             let places: Vec<DVec3> = graph.nodes.iter().map(|node| node.position).collect();
             scene.add(program, net, &places, Some(graph))?;
         }

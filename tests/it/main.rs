@@ -18,6 +18,7 @@ mod metrics;
 mod mutation;
 mod passes;
 mod patterns;
+mod preview;
 mod programs;
 mod properties;
 mod reader;

@@ -99,8 +99,9 @@ fn case(printed: &'static Printed, size: f64, runs: u32, report: Report) -> Resu
         picot::baseline(&shape, &mut sink).ok_or_else(|| broken(printed))?;
         baseline_times.push(begin.elapsed());
     }
-    let mut measured =
-        |algorithm| measure::measure(&shape, algorithm, &options, &mut sink).ok_or_else(|| broken(printed));
+    let mut measured = |algorithm| {
+        measure::measure(&shape, algorithm, false, &options, &mut sink).ok_or_else(|| broken(printed))
+    };
     Ok(Case {
         printed,
         size,

@@ -69,6 +69,7 @@ mod general;
 mod machine;
 mod mesh;
 mod pattern;
+mod preview;
 mod shape;
 mod xml;
 
@@ -76,7 +77,8 @@ use general::general;
 use machine::machine;
 use mesh::mesh;
 use pattern::pattern;
+use preview::preview;
 use shape::shape;
 use xml::xml;
 
-pattern! { (shape mesh machine xml general codes) }
+pattern! { (shape mesh preview machine xml general codes) }

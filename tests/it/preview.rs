@@ -1,0 +1,146 @@
+//! Scenes, their yarn and triangles, and predicted shapes.
+
+use super::snapshots::shapes;
+use picot::diag::{Sink, Sources};
+use picot::frontend::reader;
+use picot::ir::Program;
+use picot::ir::verify::verify;
+use picot::preview::{Mesh, Refused, Scene, View};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+#[expect(clippy::disallowed_methods, reason = "tests read their cases from the disk")]
+fn load(name: &str) -> std::io::Result<Vec<u8>> {
+    std::fs::read(name)
+}
+
+fn compile(path: &Path, kind: &str, options: &picot::Options) -> Option<Program> {
+    let mut sources = Sources::new(&load);
+    let mut sink = Sink::new();
+    let source = sources.open(path.to_str()?).ok()?;
+    picot::compile(&source, reader(kind)?, options, &mut sources, &mut sink)
+}
+
+fn shape(name: &str) -> Program {
+    let path = shapes().into_iter().find(|(shape, _)| shape == name).expect("a shape").1;
+    compile(&path, "shape", &picot::Options::default()).expect("it compiles")
+}
+
+fn scene(program: &Program) -> Result<Scene, Refused> {
+    let verified = verify(program, &mut Sink::new()).expect("workable");
+    Scene::new(&verified, None, &Sink::new())
+}
+
+fn patterns() -> Vec<std::path::PathBuf> {
+    super::tidy::files("tests/it/cases/patterns", "txt")
+}
+
+#[test]
+fn yarn_goes_on_in_place_and_direction_along_every_piece() {
+    for (name, path) in shapes() {
+        let program = compile(&path, "shape", &picot::Options::default()).expect("it compiles");
+        let scene = scene(&program).expect("a scene");
+        for piece in &scene.pieces {
+            let curves: Vec<_> = piece.yarn.curves().collect();
+            let stitches: Vec<u32> = curves.iter().map(|curve| curve.stitch).collect();
+            assert!(stitches.is_sorted(), "{name}: the yarn goes back");
+            assert_eq!(stitches.first().map(|k| *k as usize), Some(piece.stitches.start), "{name}");
+            for pair in curves.windows(2) {
+                let gap = pair[0].at(1.0).distance(pair[1].at(0.0));
+                let (into, out) = (pair[0].slope(1.0), pair[1].slope(0.0));
+                let angle = into.angle_between(out).to_degrees();
+                assert!(
+                    gap <= 1e-9 && angle < 0.01,
+                    "{name}, stitch {}: {gap} mm, {angle} degrees",
+                    pair[1].stitch
+                );
+            }
+        }
+    }
+}
+
+/// Every edge once in each direction, and a volume inside.
+fn closed(mesh: &Mesh, name: &str) {
+    // Corners of a box have a vertex for each face.
+    let place = |k: u32| mesh.positions[k as usize].map(f32::to_bits);
+    let mut edges: BTreeMap<([u32; 3], [u32; 3]), i32> = BTreeMap::new();
+    let mut volume = 0.0;
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|k| glam::Vec3::from_array(mesh.positions[k as usize]).as_dvec3());
+        volume += a.dot(b.cross(c)) / 6.0;
+        for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (place(triangle[a]), place(triangle[b]))) {
+            if from == to {
+                continue;
+            }
+            *edges.entry((from.min(to), from.max(to))).or_default() += if from < to { 1 } else { -1 };
+        }
+    }
+    assert!(volume > 0.0, "{name}: inside out");
+    let open = edges.values().filter(|sum| **sum != 0).count();
+    assert_eq!(open, 0, "{name}: {open} open edges of {}", edges.len());
+}
+
+#[test]
+fn triangles_are_closed_and_turn_outward() {
+    for name in ["ball", "paper-c", "paper-d", "goose", "cane"] {
+        let program = shape(name);
+        let scene = scene(&program).expect("a scene");
+        for view in [View::Realistic, View::Wireframe] {
+            let mesh = Mesh::of(&scene, view, Some(1), 0).expect("small");
+            assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()), "{name}");
+            closed(&mesh, name);
+        }
+    }
+}
+
+#[test]
+fn written_patterns_have_a_scene() {
+    for path in patterns() {
+        let Some(program) = compile(&path, "crochet", &picot::Options::default()) else { continue };
+        let Some(verified) = verify(&program, &mut Sink::new()) else { continue };
+        let scene = Scene::new(&verified, None, &Sink::new());
+        let scene = scene.unwrap_or_else(|refused| panic!("{}: {refused}", path.display()));
+        let rest = scene.predicted.expect("no graph");
+        assert!(rest.residual.is_finite() && rest.strain.is_finite(), "{}: {rest:?}", path.display());
+        assert!(scene.stitches.iter().flat_map(|stitch| stitch.corners).all(glam::DVec3::is_finite));
+    }
+}
+
+fn fit(program: &Program) -> picot::preview::predict::Fit {
+    let verified = verify(program, &mut Sink::new()).expect("workable");
+    picot::predict(&verified, &Sink::new()).expect("predicted").expect("a target")
+}
+
+#[test]
+fn predictions_come_near_the_target() {
+    let limits = [
+        ("cylinder", 0.5),
+        ("paper-a", 0.5),
+        ("horn", 0.5),
+        ("paper-b", 0.6),
+        ("paper-c", 0.6),
+        ("ball", 0.8),
+    ];
+    for (name, limit) in limits {
+        let fit = fit(&shape(name));
+        assert!(fit.rest.converged, "{name}: {fit:?}");
+        assert!(fit.chamfer <= limit, "{name}: {fit:?}");
+    }
+}
+
+#[test]
+fn without_its_short_rows_a_bent_tube_is_predicted_straight() {
+    let with = fit(&shape("paper-d"));
+    let path = shapes().into_iter().find(|(shape, _)| shape == "paper-d").expect("a shape").1;
+    let mut options = picot::Options::default();
+    options.generate.short_rows = false;
+    let without = fit(&compile(&path, "shape", &options).expect("it compiles"));
+    assert!(with.chamfer < 2.0, "{with:?}");
+    assert!(without.chamfer > 2.0 * with.chamfer, "{with:?} {without:?}");
+}
+
+#[test]
+fn too_fine_is_refused_with_the_option_that_helps() {
+    let message = Refused::TooFine { triangles: 20_000_000 }.to_string();
+    assert!(message.contains("12000000") && message.contains("detail"), "{message}");
+}
