@@ -19,6 +19,7 @@ Predicted = "N1402", "the shape is predicted";
 /// A pattern without a gauge is drawn with stitches of 5 mm x 4.25 mm. Proportions are right, sizes are not.
 ///
 /// Example: `picot preview frog.txt -o frog.png --gauge 4.5mmx4mm` draws it in your own size.
+/// A line `gauge: 4.5 x 4 mm` at the head of the pattern does the same for every target.
 GaugeAssumed = "N1403", "the gauge is assumed";
         }
     };
