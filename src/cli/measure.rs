@@ -198,6 +198,25 @@ pub(crate) fn milliseconds(time: Duration) -> Value {
     json!((time.as_secs_f64() * 1e6).round() / 1e3)
 }
 
+/// The line about the shape predicted from the pattern alone; empty when none was asked for.
+fn predicted(measured: &Measured) -> String {
+    match &measured.predicted {
+        None => String::new(),
+        Some(Ok(fit)) if fit.rest.converged => format!(
+            "predicted {:.2} stitch heights from the target in the mean, {:.2} at most (residual {:.1e}, strain {:.1} %)\n",
+            fit.chamfer,
+            fit.hausdorff,
+            fit.rest.residual,
+            100.0 * fit.rest.strain
+        ),
+        Some(Ok(fit)) => format!(
+            "predicted not converged (residual {:.1e} after {} steps)\n",
+            fit.rest.residual, fit.rest.steps
+        ),
+        Some(Err(why)) => format!("predicted no: {why}\n"),
+    }
+}
+
 fn table(
     shape: &Shape,
     algorithm: Algorithm,
@@ -284,23 +303,7 @@ fn table(
             100.0 * read.stacked_increases
         );
     }
-    let _ = match &measured.predicted {
-        None => Ok(()),
-        Some(Ok(fit)) if fit.rest.converged => writeln!(
-            text,
-            "predicted {:.2} stitch heights from the target in the mean, {:.2} at most (residual {:.1e}, strain {:.1} %)",
-            fit.chamfer,
-            fit.hausdorff,
-            fit.rest.residual,
-            100.0 * fit.rest.strain
-        ),
-        Some(Ok(fit)) => writeln!(
-            text,
-            "predicted not converged (residual {:.1e} after {} steps)",
-            fit.rest.residual, fit.rest.steps
-        ),
-        Some(Err(why)) => writeln!(text, "predicted no: {why}"),
-    };
+    text.push_str(&predicted(measured));
     let workable = match measured.unworkable {
         None => "yes".to_owned(),
         Some(0) => "no".to_owned(),

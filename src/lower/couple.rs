@@ -43,7 +43,7 @@ pub(super) fn couple(ring: &[DVec3], other: &[DVec3]) -> Vec<usize> {
     let nearest = (0..m)
         .min_by(|a, b| other[*a].distance_squared(ring[0]).total_cmp(&other[*b].distance_squared(ring[0])));
     let around = nearest.unwrap_or(0);
-    let window = (MOST_WORK / (n * m * 2 * most * most).max(1)).clamp(3, m);
+    let window = (MOST_WORK / (n * m * 2 * most * most).max(1)).clamp(3.min(m), m);
     let mut best: Option<(f64, usize, usize, Groups)> = None;
     // A group of points may lie across the place where the ring is cut.
     for turn in 0..most.min(n) {
