@@ -29,7 +29,7 @@ fn outputs(criterion: &mut Criterion) {
     for stitches in [4_000, 100_000] {
         let program = tube(stitches);
         let verified = verify(&program, &mut Sink::new()).expect("workable");
-        for name in ["png", "svg"] {
+        for name in ["png", "svg", "gltf", "stl"] {
             let backend = target(name).expect("listed").configure(toml::Table::new()).expect("defaults");
             group.bench_with_input(BenchmarkId::new(name, stitches), &(), |bencher, ()| {
                 bencher.iter(|| {

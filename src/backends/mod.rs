@@ -2,10 +2,13 @@
 
 pub mod crochet;
 pub mod dot;
+pub mod gltf;
 pub mod json;
 pub mod kcode;
 pub mod knitout;
+pub mod obj;
 pub mod png;
+pub mod stl;
 pub mod svg;
 pub mod xml;
 
@@ -108,10 +111,13 @@ impl Target {
 pub static TARGETS: &[Target] = &[
     Target::of::<crochet::Crochet>(),
     Target::of::<dot::Dot>(),
+    Target::of::<gltf::Gltf>(),
     Target::of::<json::Json>(),
     Target::of::<kcode::Kcode>(),
     Target::of::<knitout::Knitout>(),
+    Target::of::<obj::Obj>(),
     Target::of::<png::Png>(),
+    Target::of::<stl::Stl>(),
     Target::of::<svg::Svg>(),
     Target::of::<xml::Xml>(),
 ];

@@ -5,6 +5,15 @@ use super::predict::Rest;
 use crate::diag::{Code, Diagnostic, Sink};
 
 impl Scene {
+    /// Where the places of the stitches are from, in a word.
+    pub fn origin(&self) -> &'static str {
+        match self.predicted {
+            None => "target",
+            Some(Rest { converged: true, .. }) => "predicted",
+            Some(Rest { converged: false, .. }) => "unconverged",
+        }
+    }
+
     /// Tells the sink what is assumed or predicted, once a run.
     pub fn remark(&self, sink: &mut Sink<'_>) {
         let mut tell = |code: Code, message: String, help: &str| {

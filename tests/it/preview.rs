@@ -1,6 +1,7 @@
 //! Scenes, their yarn and triangles, and predicted shapes.
 
 use super::snapshots::shapes;
+use picot::backends::target;
 use picot::diag::{Sink, Sources};
 use picot::frontend::reader;
 use picot::ir::Program;
@@ -138,6 +139,36 @@ fn without_its_short_rows_a_bent_tube_is_predicted_straight() {
     let without = fit(&compile(&path, "shape", &options).expect("it compiles"));
     assert!(with.chamfer < 2.0, "{with:?}");
     assert!(without.chamfer > 2.0 * with.chamfer, "{with:?} {without:?}");
+}
+
+#[test]
+fn glb_and_stl_say_what_they_hold() {
+    let program = shape("ball");
+    let verified = verify(&program, &mut Sink::new()).expect("workable");
+    let emit = |name: &str, options: &str| {
+        let mut bytes = Vec::new();
+        let backend =
+            target(name).expect("listed").configure(options.parse().expect("TOML")).expect("options");
+        backend.emit(&verified, &mut bytes, &mut Sink::new()).expect("written");
+        bytes
+    };
+    let word =
+        |bytes: &[u8], at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four")) as usize;
+    let stl = emit("stl", "view = 'wireframe'");
+    assert_eq!(stl.len(), 84 + 50 * word(&stl, 80));
+    let glb = emit("gltf", "detail = 1");
+    assert_eq!((&glb[..4], word(&glb, 8)), (&b"glTF"[..], glb.len()));
+    let text = &glb[20..20 + word(&glb, 12)];
+    let document: serde_json::Value = serde_json::from_slice(text).expect("JSON");
+    let stitches = scene(&program).expect("a scene").stitches.len();
+    let attributes = &document["meshes"][0]["primitives"][0]["attributes"];
+    let accessor = &document["accessors"][attributes["_STITCH"].as_u64().expect("an index") as usize];
+    let view = &document["bufferViews"][accessor["bufferView"].as_u64().expect("an index") as usize];
+    let start = 28 + word(&glb, 12) + view["byteOffset"].as_u64().expect("a number") as usize;
+    let ids: Vec<f32> = (0..accessor["count"].as_u64().expect("a number") as usize)
+        .map(|k| f32::from_bits(word(&glb, start + 4 * k) as u32))
+        .collect();
+    assert_eq!(ids.iter().copied().fold(0.0, f32::max) as usize, stitches - 1);
 }
 
 #[test]

@@ -61,9 +61,13 @@ fn compile(path: &Path) -> (Vec<(Vec<u8>, String)>, String) {
     (outputs, messages(&sink))
 }
 
-/// Defaults, but for pictures, which are small here.
+/// Defaults, but models are coarse here and pictures small.
 fn options(target: &str) -> toml::Table {
-    let options = if target == "png" { "size = '160x120'\ndetail = 1" } else { "" };
+    let options = match target {
+        "png" => "size = '160x120'\ndetail = 1",
+        "gltf" | "obj" | "stl" => "detail = 1",
+        _ => "",
+    };
     options.parse().expect("TOML")
 }
 
@@ -86,6 +90,7 @@ fn every_shape_through_every_target() {
             assert!(bytes == again, "{name} to {}: two runs differ", target.name);
             let shown = match target.name {
                 "json" => summary(bytes),
+                "obj" => size(bytes),
                 _ if target.binary => size(bytes),
                 _ => shortened(bytes),
             };
