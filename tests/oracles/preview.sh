@@ -22,7 +22,7 @@ for view in realistic wireframe; do
         name=${shape#"$root/shapes/"}
         name=${name%.toml}
         "$picot" -q build "$shape" --set view=$view --set detail=1 -o "$work/models/${name//\//-}-$view.stl" \
-            -o "$work/models/${name//\//-}-$view.glb" -o "$work/models/${name//\//-}-$view.obj"
+            -o "$work/models/${name//\//-}-$view.glb" -o "$work/models/${name//\//-}-$view.obj" 2>"$work/log" || { cat "$work/log"; exit 1; }
     done < <(find "$root/shapes" -name '*.toml' | sort)
 done
 NODE_PATH=$work/node_modules node "$here/gltf_check.js" "$work"/models/*.glb
