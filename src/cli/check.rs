@@ -117,7 +117,8 @@ fn check(
     sources: &mut Sources<'_>,
     sink: &mut Sink<'_>,
 ) -> Result<Held, Failure> {
-    let reader = reader_of(path, arguments.reading.from.as_deref())?;
+    let from = arguments.reading.from.as_deref();
+    let reader = reader_of(path, from.or_else(|| (path == "-").then(|| likely(stdin))))?;
     if reader.name == crochet::READER.name && arguments.against.is_none() {
         let conventions = &routed.options.conventions;
         if arguments.fix {
@@ -153,6 +154,17 @@ fn check(
             Ok(Held::parts(parts(&program)))
         }
         Some(Input::Shape(_)) | None => Ok(Held::default()),
+    }
+}
+
+/// The reader of text that comes without a name: the marks of machine code and XML stand at its very start.
+fn likely(text: &[u8]) -> &'static str {
+    if text.starts_with(b";!knitout") {
+        "knitout"
+    } else if text.trim_ascii_start().starts_with(b"<") {
+        "xml"
+    } else {
+        crochet::READER.name
     }
 }
 

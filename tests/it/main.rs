@@ -5,6 +5,7 @@ mod baseline;
 mod branches;
 mod charts;
 mod cli;
+mod cli_patterns;
 mod corpus;
 mod ebnf;
 mod examples;

@@ -15,8 +15,11 @@ use nom::sequence::{pair, preceded};
 
 /// A row with its label and count; the whole line must be read.
 pub(crate) fn row(input: Tokens<'_>) -> Res<'_, Content> {
+    let bold = input.key(0) == Some(Key::Stop);
     let (input, table) = bullet(input);
     let (input, label) = match label(input, table) {
+        // `**Rnd 2:** 6 sc`: bold type ends.
+        Ok((rest, label)) if bold && rest.key(0) == Some(Key::Stop) => (rest.skip(1), Some(label)),
         Ok((rest, label)) => (rest, Some(label)),
         Err(_) => (input, None),
     };
@@ -68,12 +71,12 @@ fn end_mark(input: Tokens<'_>) -> Tokens<'_> {
     }
 }
 
-/// A bullet or the first bar of a table row.
+/// A bullet, the first bar of a table row, or the beginning of bold type.
 fn bullet(input: Tokens<'_>) -> (Tokens<'_>, bool) {
     match input.key(0) {
         Some(Key::Middot | Key::Dash) => (input.skip(1), false),
         Some(Key::Pipe) => (input.skip(1), true),
-        Some(Key::Star) if label(input.skip(1), false).is_ok() => (input.skip(1), false),
+        Some(Key::Star | Key::Stop) if label(input.skip(1), false).is_ok() => (input.skip(1), false),
         _ => (input, false),
     }
 }
@@ -175,7 +178,7 @@ pub(crate) fn label(input: Tokens<'_>, table: bool) -> Res<'_, Label> {
     }
     let ended = match rest.key(0) {
         Some(Key::Colon | Key::Dot | Key::Dash) => true,
-        Some(Key::Close(b'(')) => kind.is_none(),
+        Some(Key::Close(b'(')) => before.is_some() || kind.is_none(),
         Some(Key::Pipe) => table,
         _ => false,
     };
@@ -241,7 +244,7 @@ fn amount(input: Tokens<'_>) -> Res<'_, (Num, CountUnit)> {
 pub(crate) fn count(input: Tokens<'_>, table: bool) -> Res<'_, Count> {
     let mut units = Vec::new();
     match input.key(0) {
-        Some(Key::Open(brace @ (b'(' | b'['))) => {
+        Some(Key::Open(brace)) => {
             let (mut rest, first) = amount(input.skip(1))?;
             units.push(first);
             while matches!(rest.key(0), Some(Key::Comma | Key::Semi | Key::And | Key::Slash)) {
@@ -294,7 +297,7 @@ fn finish<'t>(from: Tokens<'t>, rest: Tokens<'t>, units: Vec<(Num, CountUnit)>) 
 /// True when a count follows and the line ends behind it.
 pub(crate) fn count_ahead(input: Tokens<'_>, back: bool) -> bool {
     let possible = match input.key(0) {
-        Some(Key::Open(b'(' | b'[')) => matches!(input.tok(1), Some(Tok::Int(_) | Tok::Ord(_))),
+        Some(Key::Open(_)) => matches!(input.tok(1), Some(Tok::Int(_) | Tok::Ord(_))),
         Some(Key::Eq | Key::FatArrow | Key::You) => true,
         // In a back pass an arrow with stitches behind it goes forward.
         Some(Key::Fwd) => !back || !matches!(input.tok(2), Some(Tok::Stitch(_) | Tok::Shaped(..))),
