@@ -11,7 +11,7 @@ use picot::diag::position::Positions;
 use picot::diag::render::{json::object, short::short};
 use picot::diag::{Diagnostic, Severity, Sink, Source, Sources};
 use picot::frontend::Input;
-use picot::frontend::crochet::{self, Conventions, Document, Round};
+use picot::frontend::crochet::{self, Conventions, Document, PartRounds, Round};
 use picot::ir::machine::{self, Machine};
 use picot::ir::{Direction, Part, Program, Row, Step, verify::verify};
 use picot::lower::machine::{Options, validate::validate};
@@ -65,13 +65,13 @@ pub(crate) fn run(arguments: &Check, report: Report) -> Result<Status, Failure> 
 #[derive(Default)]
 struct Held {
     /// Parts of a pattern with their rounds.
-    parts: Vec<Value>,
+    parts: Vec<PartRounds>,
     /// What a machine program amounts to, with the machine that it was run on.
     run: Option<(machine::Report, Option<String>)>,
 }
 
 impl Held {
-    fn parts(parts: Vec<Value>) -> Self {
+    fn parts(parts: Vec<PartRounds>) -> Self {
         Self { parts, run: None }
     }
 
@@ -169,22 +169,13 @@ fn likely(text: &[u8]) -> &'static str {
 }
 
 /// Checks a written pattern row by row; its rounds are counted as far as they can be read.
-fn written(source: &Source, conventions: &Conventions, sink: &mut Sink<'_>) -> Vec<Value> {
+fn written(source: &Source, conventions: &Conventions, sink: &mut Sink<'_>) -> Vec<PartRounds> {
     let Some(document) = Document::parse(source, conventions.language, sink) else { return Vec::new() };
     let checked = document.check(conventions, sink);
     if let Some(program) = &checked.program {
         verify(program, sink);
     }
-    let round = |round: &Round| {
-        json!({ "label": round.label, "first": round.first, "last": round.last, "consumes": round.consumes,
-            "produces": round.produces, "stated": round.stated })
-    };
-    let parts = checked.parts.iter();
-    parts
-        .map(|part| {
-            json!({ "name": part.name, "rounds": part.rounds.iter().map(round).collect::<Vec<Value>>() })
-        })
-        .collect()
+    checked.parts
 }
 
 /// Applies the certain fixes of a written pattern to its file.
@@ -213,27 +204,35 @@ fn file(path: &str, held: &Held, found: &[Diagnostic], sources: &Sources<'_>) ->
         .map(|diagnostic| serde_json::to_value(object(diagnostic, &positions)))
         .collect::<Result<Vec<_>, _>>()
         .map_err(|error| Failure::usage(error.to_string()))?;
+    let round = |round: &Round| {
+        json!({ "label": round.label, "first": round.first, "last": round.last, "consumes": round.consumes,
+            "produces": round.produces, "stated": round.stated })
+    };
+    let part = |part: &PartRounds| json!({ "name": part.name, "rounds": part.rounds.iter().map(round).collect::<Vec<Value>>() });
+    let parts: Vec<Value> = held.parts.iter().map(part).collect();
     let run = held.run_object();
-    let mut value = json!({ "path": path, "ok": ok, "parts": held.parts, "diagnostics": diagnostics });
+    let mut value = json!({ "path": path, "ok": ok, "parts": parts, "diagnostics": diagnostics });
     if let (Some(run), Some(object)) = (run, value.as_object_mut()) {
         object.insert("run".to_owned(), run);
     }
     Ok(value)
 }
 
-fn parts(program: &Program) -> Vec<Value> {
-    let rounds = |part: &Part| -> Vec<Value> {
-        part.numbered_rows()
-            .map(|(first, row)| {
-                let last = first.saturating_add(row.times.saturating_sub(1));
-                let label = if first == last { first.to_string() } else { format!("{first}-{last}") };
-                let (consumes, produces) = loops(row);
-                json!({ "label": label, "first": first, "last": last, "consumes": consumes, "produces": produces,
-                    "stated": row.stated.map(|(count, _)| count) })
-            })
-            .collect()
+/// The rounds of a program that no text was read for.
+fn parts(program: &Program) -> Vec<PartRounds> {
+    let round = |(first, row): (u32, &Row)| {
+        let last = first.saturating_add(row.times.saturating_sub(1));
+        let label = if first == last { first.to_string() } else { format!("{first}-{last}") };
+        let (consumes, produces) = loops(row);
+        let stated = row.stated.map(|(count, _)| count);
+        let (consumes, produces) = (u32::try_from(consumes).ok(), u32::try_from(produces).ok());
+        Round { label, first, last, consumes, produces, stated }
     };
-    program.pattern.parts.iter().map(|part| json!({ "name": part.name, "rounds": rounds(part) })).collect()
+    let part = |part: &Part| PartRounds {
+        name: part.name.clone(),
+        rounds: part.numbered_rows().map(round).collect(),
+    };
+    program.pattern.parts.iter().map(part).collect()
 }
 
 /// Loops of the round below, and loops of this round: what goes back is worked into loops of the row itself.

@@ -4,10 +4,10 @@
 //! last, and where a pass without stitches brings them to their parking place; other moves of the carriage alone and of
 //! a carrier leave no trace, since Knitout implies them.
 
+use super::findings::Findings;
 use super::{Input, Reader};
-use crate::diag::{Code as Finding, Diagnostic, Sink, Source, Sources, Span};
+use crate::diag::{Code as Finding, Sink, Source, Sources, Span};
 use crate::ir::machine::{Bed, CarrierSet, Code, Direction, Instruction, Needle, Rack};
-use std::collections::BTreeMap;
 
 /// This reader.
 pub const READER: Reader = Reader {
@@ -21,32 +21,18 @@ pub const READER: Reader = Reader {
 const MARGIN: usize = 15;
 /// Needles of a bed; one public writer makes lines one cell too wide.
 const CELLS: usize = 252;
-/// Findings of one kind that are reported one by one.
-const SHOWN: u32 = 20;
 
 /// Reads a program; `None` with the reasons in the sink when a line cannot be understood.
 pub fn read(source: &Source, sink: &mut Sink<'_>) -> Option<Code> {
-    let text = match source.text() {
-        Ok(text) => text,
-        Err(offset) => {
-            sink.push(
-                Diagnostic::new(Finding::MachineCodeNotText, "the file is not UTF-8 text")
-                    .at(source.span(offset..offset + 1), "this byte"),
-            );
-            return None;
-        }
-    };
-    let before = sink.errors();
+    let found = Findings::new(source, sink)?;
+    let text = found.text;
     let mut parser = Parser {
-        source,
-        text,
-        sink,
+        found,
         fields: Fields::default(),
         rack: Rack::default(),
         last: None,
         steps: Vec::new(),
         home: false,
-        seen: BTreeMap::new(),
     };
     let mut rest = text;
     while !rest.is_empty() {
@@ -55,8 +41,7 @@ pub fn read(source: &Source, sink: &mut Sink<'_>) -> Option<Code> {
         parser.line(line.strip_suffix('\r').unwrap_or(line));
     }
     parser.end();
-    let steps = std::mem::take(&mut parser.steps);
-    (sink.errors() == before).then(|| assemble(&steps))
+    parser.found.end().then(|| assemble(&parser.steps))
 }
 
 /// What stands between two passes, or a pass.
@@ -101,15 +86,12 @@ struct Fields<'a> {
 const NAMES: [&str; 4] = ["FRNT:", "STIF:", "REAR:", "STIR:"];
 
 struct Parser<'a, 's, 'o> {
-    source: &'a Source,
-    text: &'a str,
-    sink: &'s mut Sink<'o>,
+    found: Findings<'a, 's, 'o>,
     fields: Fields<'a>,
     rack: Rack,
     last: Option<Direction>,
     steps: Vec<Step<'a>>,
     home: bool,
-    seen: BTreeMap<Finding, u32>,
 }
 
 /// One bed line, taken apart.
@@ -121,23 +103,6 @@ struct BedLine<'a> {
 }
 
 impl<'a> Parser<'a, '_, '_> {
-    fn span(&self, part: &str) -> Span {
-        let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
-        self.source.span(start..start + part.len())
-    }
-
-    fn find(&mut self, finding: Finding, part: &str, message: &str, help: &str) {
-        let count = self.seen.entry(finding).or_default();
-        *count += 1;
-        if *count <= SHOWN {
-            let mut diagnostic = Diagnostic::new(finding, message).at(self.span(part), "");
-            if !help.is_empty() {
-                diagnostic = diagnostic.help(help);
-            }
-            self.sink.push(diagnostic);
-        }
-    }
-
     fn line(&mut self, line: &'a str) {
         if line.trim().is_empty() {
         } else if let Some(comment) = line.strip_prefix("//") {
@@ -150,32 +115,26 @@ impl<'a> Parser<'a, '_, '_> {
             let value = line.get(NAMES.get(field).map_or(0, |name| name.len())..).unwrap_or_default();
             let place = self.fields.values.get_mut(field);
             if place.is_some_and(|place| place.replace(value).is_some()) {
-                self.find(Finding::KcodePass, line, "the pass has this line twice", "");
+                self.found.say(Finding::KcodePass, line, "the pass has this line twice", "");
             }
         } else if line.starts_with(">>") || line.starts_with("<<") {
             self.pass(line);
         } else if self.fields.values.iter().any(Option::is_some) {
             let help = "a pass is FRNT, STIF, REAR, STIR and a move such as `>> Kn-Kn 2 300 100`";
-            self.find(Finding::KcodePass, line, "this line breaks a pass", help);
+            self.found.say(Finding::KcodePass, line, "this line breaks a pass", help);
         } else {
             self.steps.push(Step::Pause(line.trim()));
         }
     }
 
     fn end(&mut self) {
-        let end = self.text.get(self.text.len()..).unwrap_or_default();
+        let end = self.found.text.get(self.found.text.len()..).unwrap_or_default();
         if self.fields.values.iter().any(Option::is_some) {
-            self.find(Finding::KcodePass, end, "the file ends inside a pass", "");
+            self.found.say(Finding::KcodePass, end, "the file ends inside a pass", "");
         }
         if !self.home {
-            let start = self.text.get(..0).unwrap_or_default();
-            self.find(Finding::KcodeHead, start, "there is no HOME line at the top", "is this k-code?");
-        }
-        for (finding, count) in std::mem::take(&mut self.seen) {
-            if let Some(more) = count.checked_sub(SHOWN).filter(|more| *more > 0) {
-                let message = format!("{more} more of the same: {}", finding.title());
-                self.sink.push(Diagnostic::new(finding, message));
-            }
+            let start = self.found.text.get(..0).unwrap_or_default();
+            self.found.say(Finding::KcodeHead, start, "there is no HOME line at the top", "is this k-code?");
         }
     }
 
@@ -183,7 +142,7 @@ impl<'a> Parser<'a, '_, '_> {
         let number = number(value.strip_prefix(['+']).unwrap_or(value));
         match number.and_then(Rack::from_needles) {
             Some(rack) if rack.0 % 2 == 0 => self.rack = rack,
-            _ => self.find(
+            _ => self.found.say(
                 Finding::KcodeNumber,
                 value,
                 "this is no rack",
@@ -202,18 +161,18 @@ impl<'a> Parser<'a, '_, '_> {
                 .map(|(name, _)| *name)
                 .collect();
             let message = format!("the pass lacks {}", missing.join(" "));
-            return self.find(Finding::KcodePass, line, &message, "");
+            return self.found.say(Finding::KcodePass, line, &message, "");
         };
         let Some((direction, kind, carrier, speed, roller)) = self.move_line(line) else { return };
         let (Some(front), Some(back)) = (self.bed(front), self.bed(back)) else { return };
         self.sizes(front_sizes);
         self.sizes(back_sizes);
         if front.marks != back.marks {
-            self.find(Finding::KcodeMarks, back.text, "FRNT and REAR have different stop marks", "");
+            self.found.say(Finding::KcodeMarks, back.text, "FRNT and REAR have different stop marks", "");
         }
         let Some(carrier) = self.carrier(carrier, &front, line) else { return };
         if self.last.is_none() && direction != Direction::Plus {
-            self.find(
+            self.found.say(
                 Finding::KcodeDirection,
                 line,
                 "the first pass does not go right",
@@ -222,14 +181,14 @@ impl<'a> Parser<'a, '_, '_> {
         }
         if self.last == Some(direction) {
             let help = "put a move of the carriage alone between: `<< Kn-Kn 0 300 0` with nothing marked";
-            self.find(Finding::KcodeDirection, line, "two passes in a row go the same way", help);
+            self.found.say(Finding::KcodeDirection, line, "two passes in a row go the same way", help);
         }
         self.last = Some(direction);
         let size = [(&front, front_sizes), (&back, back_sizes)].into_iter().find_map(|(bed, sizes)| {
             let cell = usize::try_from(*bed.cells.first()?).ok()?;
             sizes.as_bytes().get(MARGIN + cell).map(|&byte| char::from(byte))
         });
-        let span = self.span(line);
+        let span = self.found.span(line);
         let rests = front.marks.iter().find(|(_, mark)| mark.is_ascii_digit()).map(|(at, _)| *at);
         let bare = front.cells.is_empty() && back.cells.is_empty();
         let parked = bare && direction == Direction::Minus && rests == parking(carrier);
@@ -258,7 +217,12 @@ impl<'a> Parser<'a, '_, '_> {
                 (direction, kind, carrier, speed, roller)
             }
             _ => {
-                self.find(Finding::KcodeMove, line, "a move has five fields, or six in one dialect", help);
+                self.found.say(
+                    Finding::KcodeMove,
+                    line,
+                    "a move has five fields, or six in one dialect",
+                    help,
+                );
                 return None;
             }
         };
@@ -266,7 +230,7 @@ impl<'a> Parser<'a, '_, '_> {
             ">>" => Direction::Plus,
             "<<" => Direction::Minus,
             _ => {
-                self.find(Finding::KcodeMove, direction, "this is no direction", help);
+                self.found.say(Finding::KcodeMove, direction, "this is no direction", help);
                 return None;
             }
         };
@@ -288,13 +252,13 @@ impl<'a> Parser<'a, '_, '_> {
         let Some(acts) = acts else {
             let help =
                 "types are Kn-Kn, Kn-Tu, Tu-Kn, Tu-Tu; to the right Tr-Rr, Rr-Tr, to the left Tr-Rl, Rl-Tr";
-            self.find(Finding::KcodeMove, kind, "this type does not fit the direction", help);
+            self.found.say(Finding::KcodeMove, kind, "this type does not fit the direction", help);
             return None;
         };
         let numbers =
             carrier.parse::<u8>().ok().filter(|&carrier| carrier <= 6).zip(number(speed)).zip(number(roller));
         let Some(((carrier, speed), roller)) = numbers else {
-            self.find(Finding::KcodeNumber, line, "carrier, speed or roller is out of range", help);
+            self.found.say(Finding::KcodeNumber, line, "carrier, speed or roller is out of range", help);
             return None;
         };
         Some((direction, acts, carrier, speed, roller))
@@ -322,7 +286,7 @@ impl<'a> Parser<'a, '_, '_> {
             let message = format!(
                 "a bed line has 15 dots, {CELLS} cells of `_` or `-`, and 15 dots; this one has {width} characters"
             );
-            self.find(
+            self.found.say(
                 Finding::KcodeBed,
                 text,
                 &message,
@@ -331,7 +295,7 @@ impl<'a> Parser<'a, '_, '_> {
             return None;
         }
         if cells.last().is_some_and(|&cell| cell >= CELLS as i32) {
-            self.find(Finding::KcodeBed, text, "a needle beyond the bed of 252 is marked", "");
+            self.found.say(Finding::KcodeBed, text, "a needle beyond the bed of 252 is marked", "");
             return None;
         }
         Some(BedLine { cells, marks, text })
@@ -339,10 +303,10 @@ impl<'a> Parser<'a, '_, '_> {
 
     fn sizes(&mut self, text: &'a str) {
         if !text.bytes().all(|byte| byte.is_ascii_digit() || byte.is_ascii_uppercase()) {
-            self.find(Finding::KcodeBed, text, "stitch sizes are 0-9 and A-Z, one for each cell", "");
+            self.found.say(Finding::KcodeBed, text, "stitch sizes are 0-9 and A-Z, one for each cell", "");
         } else if !matches!(text.len().checked_sub(2 * MARGIN), Some(CELLS | 253)) {
             let message = format!("{} stitch sizes do not match the bed line", text.len());
-            self.find(Finding::KcodeSizes, text, &message, "");
+            self.found.say(Finding::KcodeSizes, text, &message, "");
         }
     }
 
@@ -353,12 +317,17 @@ impl<'a> Parser<'a, '_, '_> {
         let odd =
             |digit: u8| !(1..=6).contains(&digit) || (named != 0 && digit != named) || Some(digit) != first;
         if first.is_some_and(odd) || digits.any(odd) {
-            self.find(Finding::KcodeMarks, line, "the stop marks name another carrier than the move", "");
+            self.found.say(
+                Finding::KcodeMarks,
+                line,
+                "the stop marks name another carrier than the move",
+                "",
+            );
             return None;
         }
         let stops = |mark: char| bed.marks.iter().filter(|(_, other)| *other == mark).count();
         if stops('/') > 1 || stops('\\') > 1 {
-            self.find(Finding::KcodeMarks, bed.text, "the carriage stops twice at one side", "");
+            self.found.say(Finding::KcodeMarks, bed.text, "the carriage stops twice at one side", "");
             return None;
         }
         Some(if named == 0 { first.unwrap_or(0) } else { named })
@@ -369,13 +338,13 @@ impl<'a> Parser<'a, '_, '_> {
         let Some((_, source, target)) = direction_of_transfer(pass) else { return };
         if !pass.rack.is_whole() {
             let message = format!("at rack {} needles do not face each other", pass.rack);
-            return self.find(Finding::KcodeTransfer, line, &message, "");
+            return self.found.say(Finding::KcodeTransfer, line, &message, "");
         }
         let by = shift(pass);
         let lost = source.iter().find(|&&cell| target.binary_search(&(cell + by)).is_err());
         if let (0, Some(cell)) = (pass.carrier, lost) {
             let message = format!("the needle that faces needle {} is not marked", cell + 1);
-            self.find(Finding::KcodeTransfer, line, &message, "both needles of a transfer are marked");
+            self.found.say(Finding::KcodeTransfer, line, &message, "both needles of a transfer are marked");
         }
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! What one line alone can tell is checked here; what takes the machine's state is found by `ir::machine::check`.
 
+use super::findings::Findings;
 use super::{Input, Reader};
-use crate::diag::{Code as Finding, Diagnostic, Sink, Source, Sources, Span, did_you_mean};
+use crate::diag::{Code as Finding, Sink, Source, Sources, did_you_mean};
 use crate::ir::machine::{
     CarrierId, CarrierSet, Code, Comment, Direction, Header, Instruction, MAX_CARRIERS, MAX_NEEDLE, Needle,
     Rack,
@@ -20,8 +21,6 @@ pub const READER: Reader = Reader {
 
 /// The version of the magic line that is fully known.
 const VERSION: u32 = 2;
-/// Findings of one kind that are reported one by one.
-const SHOWN: u32 = 20;
 
 const OPCODES: &[&str] = &[
     "in",
@@ -43,53 +42,29 @@ const OPCODES: &[&str] = &[
 
 /// Reads a program; `None` with the reasons in the sink when a line cannot be understood.
 pub fn read(source: &Source, sink: &mut Sink<'_>) -> Option<Code> {
-    let text = match source.text() {
-        Ok(text) => text,
-        Err(offset) => {
-            sink.push(
-                Diagnostic::new(Finding::MachineCodeNotText, "the file is not UTF-8 text")
-                    .at(source.span(offset..offset + 1), "this byte"),
-            );
-            return None;
-        }
-    };
-    let before = sink.errors();
     let mut reader = Parser {
-        source,
-        text,
-        sink,
+        found: Findings::new(source, sink)?,
         code: Code::default(),
         names: BTreeMap::new(),
         open_carriers: true,
         unknown: BTreeSet::new(),
-        seen: BTreeMap::new(),
     };
     reader.file();
-    for (finding, count) in std::mem::take(&mut reader.seen) {
-        if let Some(more) = count.checked_sub(SHOWN).filter(|more| *more > 0) {
-            let message = format!("{more} more of the same: {}", finding.title());
-            reader.sink.push(Diagnostic::new(finding, message));
-        }
-    }
-    let code = reader.code;
-    (sink.errors() == before).then_some(code)
+    reader.found.end().then_some(reader.code)
 }
 
 struct Parser<'a, 's, 'o> {
-    source: &'a Source,
-    text: &'a str,
-    sink: &'s mut Sink<'o>,
+    found: Findings<'a, 's, 'o>,
     code: Code,
     names: BTreeMap<&'a str, CarrierId>,
     /// No `Carriers` header: carriers are taken as they come.
     open_carriers: bool,
     unknown: BTreeSet<&'a str>,
-    seen: BTreeMap<Finding, u32>,
 }
 
 impl<'a> Parser<'a, '_, '_> {
     fn file(&mut self) {
-        let text = self.text;
+        let text = self.found.text;
         let mut rest = text;
         let mut returns = false;
         let (mut first, mut in_header) = (true, true);
@@ -100,7 +75,7 @@ impl<'a> Parser<'a, '_, '_> {
             if bare.len() < line.len() && !returns {
                 returns = true;
                 let help = "save the file with LF line ends".to_owned();
-                self.find(Finding::CarriageReturns, bare, "lines end in CR LF".to_owned(), &help);
+                self.found.say(Finding::CarriageReturns, bare, "lines end in CR LF".to_owned(), &help);
             }
             if first {
                 first = false;
@@ -119,24 +94,7 @@ impl<'a> Parser<'a, '_, '_> {
             let help = "add `;;Carriers: 1 2 3 4 5 6` below the first line, with the carriers of the machine";
             let start = text.get(..0).unwrap_or_default();
             let message = "the header does not name the carriers".to_owned();
-            self.find(Finding::CarriersHeaderMissing, start, message, help);
-        }
-    }
-
-    fn span(&self, part: &str) -> Span {
-        let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
-        self.source.span(start..start + part.len())
-    }
-
-    fn find(&mut self, finding: Finding, part: &str, message: String, help: &str) {
-        let count = self.seen.entry(finding).or_default();
-        *count += 1;
-        if *count <= SHOWN {
-            let mut diagnostic = Diagnostic::new(finding, message).at(self.span(part), "");
-            if !help.is_empty() {
-                diagnostic = diagnostic.help(help);
-            }
-            self.sink.push(diagnostic);
+            self.found.say(Finding::CarriersHeaderMissing, start, message, help);
         }
     }
 
@@ -148,11 +106,11 @@ impl<'a> Parser<'a, '_, '_> {
             self.code.version = version;
             if version > VERSION {
                 let message = format!("knitout-{version} is newer than knitout-{VERSION}");
-                self.find(Finding::NewerKnitout, line, message, "it is read as version 2");
+                self.found.say(Finding::NewerKnitout, line, message, "it is read as version 2");
             }
         } else {
             let help = "the first line must be `;!knitout-2`";
-            self.find(Finding::KnitoutMagic, line, "this is no Knitout file".to_owned(), help);
+            self.found.say(Finding::KnitoutMagic, line, "this is no Knitout file".to_owned(), help);
         }
     }
 
@@ -161,7 +119,7 @@ impl<'a> Parser<'a, '_, '_> {
         let Some(content) = line.strip_prefix(";;") else { return false };
         let Some((name, value)) = content.split_once(": ") else {
             let message = "this line ends the header".to_owned();
-            self.find(Finding::MalformedHeader, line, message, "a header is `;;NAME: VALUE`");
+            self.found.say(Finding::MalformedHeader, line, message, "a header is `;;NAME: VALUE`");
             return false;
         };
         let known = matches!(name, "Carriers" | "Machine" | "Gauge" | "Position" | "Width")
@@ -169,13 +127,13 @@ impl<'a> Parser<'a, '_, '_> {
             || name.starts_with("X-");
         if !known {
             let message = format!("header `{name}` is not known");
-            self.find(Finding::UnknownHeader, line, message, "it is kept and ignored");
+            self.found.say(Finding::UnknownHeader, line, message, "it is kept and ignored");
         }
         if self.code.header(name).is_some() {
             let message = format!("header `{name}` is given twice");
-            self.find(Finding::DuplicateHeader, line, message, "the last one counts");
+            self.found.say(Finding::DuplicateHeader, line, message, "the last one counts");
         }
-        let span = self.span(line);
+        let span = self.found.span(line);
         self.code.headers.push(Header { name: name.to_owned(), value: value.trim().to_owned(), span });
         if name == "Carriers" {
             self.carriers(value);
@@ -191,7 +149,7 @@ impl<'a> Parser<'a, '_, '_> {
             for name in rail.split([',', ';']).filter(|name| !name.is_empty()) {
                 if self.names.contains_key(name) {
                     let message = format!("carrier `{name}` is named twice");
-                    self.find(Finding::RepeatedCarrier, name, message, "");
+                    self.found.say(Finding::RepeatedCarrier, name, message, "");
                 } else if !self.add_carrier(name) {
                     return;
                 }
@@ -202,7 +160,7 @@ impl<'a> Parser<'a, '_, '_> {
     fn add_carrier(&mut self, name: &'a str) -> bool {
         if self.code.carriers.len() >= MAX_CARRIERS {
             let message = format!("more than {MAX_CARRIERS} carriers");
-            self.find(Finding::TooLarge, name, message, "");
+            self.found.say(Finding::TooLarge, name, message, "");
             return false;
         }
         self.names.insert(name, self.code.carriers.len() as CarrierId);
@@ -229,7 +187,7 @@ impl<'a> Parser<'a, '_, '_> {
         }
         if let Some(instruction) = self.operation(opcode, words, operation) {
             let trimmed = operation.trim_ascii();
-            let span = self.span(trimmed);
+            let span = self.found.span(trimmed);
             self.code.push(instruction, span);
         }
     }
@@ -245,7 +203,7 @@ impl<'a> Parser<'a, '_, '_> {
         {
             let message = format!("`{name}` stands after the header and is not read");
             let help = "move it up: the header ends at the first line that does not begin with `;;`";
-            self.find(Finding::LateHeader, line, message, help);
+            self.found.say(Finding::LateHeader, line, message, help);
         }
     }
 
@@ -317,7 +275,7 @@ impl<'a> Parser<'a, '_, '_> {
                 |known| format!("did you mean `{known}`?"),
             ),
         };
-        self.find(Finding::UnknownOperation, opcode, format!("there is no operation `{opcode}`"), &help);
+        self.found.say(Finding::UnknownOperation, opcode, format!("there is no operation `{opcode}`"), &help);
     }
 
     fn carrier(&mut self, name: &'a str) -> Option<CarrierId> {
@@ -330,7 +288,7 @@ impl<'a> Parser<'a, '_, '_> {
         if self.unknown.insert(name) {
             let help = format!("the header names {}", self.code.carriers.join(" "));
             let message = format!("carrier `{name}` is not in the header");
-            self.find(Finding::UnknownCarrier, name, message, &help);
+            self.found.say(Finding::UnknownCarrier, name, message, &help);
         }
         None
     }
@@ -349,7 +307,7 @@ impl<'a> Arguments<'_, 'a, '_, '_> {
         let word = self.words.next();
         if word.is_none() {
             let message = format!("`{}` lacks its {what}", self.opcode);
-            self.parser.find(Finding::WrongArguments, self.line.trim_ascii(), message, self.usage());
+            self.parser.found.say(Finding::WrongArguments, self.line.trim_ascii(), message, self.usage());
         }
         word
     }
@@ -371,7 +329,7 @@ impl<'a> Arguments<'_, 'a, '_, '_> {
     fn end(&mut self) -> Option<()> {
         let Some(word) = self.words.next() else { return Some(()) };
         let message = format!("`{}` takes no more after that", self.opcode);
-        self.parser.find(Finding::WrongArguments, word, message, self.usage());
+        self.parser.found.say(Finding::WrongArguments, word, message, self.usage());
         None
     }
 
@@ -382,7 +340,7 @@ impl<'a> Arguments<'_, 'a, '_, '_> {
             "-" => Direction::Minus,
             _ => {
                 let message = format!("`{word}` is no direction");
-                self.parser.find(Finding::BadDirection, word, message, self.usage());
+                self.parser.found.say(Finding::BadDirection, word, message, self.usage());
                 return None;
             }
         };
@@ -395,7 +353,7 @@ impl<'a> Arguments<'_, 'a, '_, '_> {
         if needle.is_none() {
             let message = format!("`{word}` is no needle");
             let help = "a needle is f, b, fs or bs and a number, such as f10, at most 32767";
-            self.parser.find(Finding::BadNeedle, word, message, help);
+            self.parser.found.say(Finding::BadNeedle, word, message, help);
         }
         needle
     }
@@ -405,7 +363,7 @@ impl<'a> Arguments<'_, 'a, '_, '_> {
         let value = number(word);
         if value.is_none() {
             let message = format!("`{word}` is no number");
-            self.parser.find(Finding::BadMachineNumber, word, message, self.usage());
+            self.parser.found.say(Finding::BadMachineNumber, word, message, self.usage());
         }
         value
     }
@@ -414,14 +372,14 @@ impl<'a> Arguments<'_, 'a, '_, '_> {
         let word = self.next("number")?;
         let Some(needles) = number(word) else {
             let message = format!("`{word}` is no number");
-            self.parser.find(Finding::BadMachineNumber, word, message, self.usage());
+            self.parser.found.say(Finding::BadMachineNumber, word, message, self.usage());
             return None;
         };
         let rack = Rack::from_needles(needles);
         if rack.is_none() {
             let message = format!("no machine racks to {word}");
             let help = "racks are multiples of a quarter needle, such as 1, -2 or 0.25";
-            self.parser.find(Finding::BadMachineNumber, word, message, help);
+            self.parser.found.say(Finding::BadMachineNumber, word, message, help);
         }
         rack
     }
@@ -436,11 +394,11 @@ impl<'a> Arguments<'_, 'a, '_, '_> {
             };
             if set.contains(&id) {
                 let message = format!("carrier `{word}` is named twice");
-                self.parser.find(Finding::RepeatedCarrier, word, message, "");
+                self.parser.found.say(Finding::RepeatedCarrier, word, message, "");
                 fine = false;
             } else if !set.push(id) {
                 let message = format!("more than {} carriers in one operation", set.len());
-                self.parser.find(Finding::TooLarge, word, message, "");
+                self.parser.found.say(Finding::TooLarge, word, message, "");
                 return None;
             }
         }

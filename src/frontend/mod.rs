@@ -1,11 +1,13 @@
 //! Readers: from bytes to a value, with spans and diagnostics. A reader is one file and one line of [`READERS`].
 
 pub mod crochet;
+mod findings;
 pub mod kcode;
 pub mod knitout;
 pub mod mesh;
 pub(crate) mod shape;
 mod unit;
+pub mod xml;
 
 pub use unit::Unit;
 
@@ -13,8 +15,6 @@ use crate::diag::{Sink, Source, Sources};
 use crate::ir::Program;
 use crate::ir::machine;
 use crate::shape::Shape;
-
-pub mod xml;
 
 /// What a file turned out to be.
 #[derive(Debug)]

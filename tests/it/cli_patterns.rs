@@ -1,6 +1,6 @@
 //! Written patterns on the command line: `check`, `check --fix`, `fmt`, and text of every kind of strangeness.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use snapbox::cmd::{Command, OutputAssert};
 use std::path::Path;
 
@@ -118,7 +118,8 @@ fn json_of_check() {
     assert_eq!((&files[0]["path"], &files[0]["ok"]), (&good.into(), &true.into()));
     assert_eq!((&files[1]["path"], &files[1]["ok"]), (&bad.into(), &false.into()));
     let round = &files[0]["parts"][0]["rounds"][1];
-    let expected = serde_json::json!({ "label": "2", "first": 2, "last": 2, "consumes": 6, "produces": 12, "stated": 12 });
+    let expected =
+        json!({ "label": "2", "first": 2, "last": 2, "consumes": 6, "produces": 12, "stated": 12 });
     assert_eq!(round, &expected);
 
     let found = &files[1]["diagnostics"][0];
@@ -129,7 +130,7 @@ fn json_of_check() {
     let edit = &found["fixes"][0]["edits"][0];
     assert!(found["fixes"][0]["title"].is_string());
     let five = SLIP.find("x 5").expect("planted") + 2;
-    let span = serde_json::json!({ "start": five, "end": five + 1, "line": 4, "column": 20 });
+    let span = json!({ "start": five, "end": five + 1, "line": 4, "column": 20 });
     assert_eq!((&edit["span"], &edit["replacement"]), (&span, &"6".into()));
     assert_eq!(found["span"]["line"], 4);
 }
@@ -259,7 +260,10 @@ fn json_of_a_written_pattern() {
     };
     let rounds: Vec<_> = part["rounds"].as_array().expect("rounds").iter().map(facts).collect();
     let op = |name: &str, times| (name.to_owned(), times);
-    assert_eq!(rounds[1], (Some(6), Some(12), vec![op("inc", 6)]));
-    assert_eq!(rounds[2], (Some(12), Some(11), vec![op("dec", 1), op("sc", 10)]));
-    assert_eq!(part["rounds"][2]["text"], "dec, 10 sc");
+    // The ring with its stitches is the start; rounds follow it.
+    assert_eq!((&part["start"]["kind"], &part["start"]["loops"]), (&json!("ring"), &json!(6)));
+    assert_eq!(part["rounds"][0]["number"], 2);
+    assert_eq!(rounds[0], (Some(6), Some(12), vec![op("inc", 6)]));
+    assert_eq!(rounds[1], (Some(12), Some(11), vec![op("dec", 1), op("sc", 10)]));
+    assert_eq!(part["rounds"][1]["text"], "dec, 10 sc");
 }

@@ -81,11 +81,11 @@ pub(crate) fn around(prev: &str, line: &str, convention: &str) -> String {
     text
 }
 
-#[test]
-fn examples_give_their_counts_and_rejections() {
+/// Runs a table of cases: how many there are, and what came out otherwise.
+pub(crate) fn run(rows: &str) -> (usize, Vec<String>) {
     let mut wrong = Vec::new();
     let mut lines = 0;
-    for row in EXAMPLES.lines().skip(1) {
+    for row in rows.lines().skip(1) {
         let columns: Vec<&str> = row.split('\t').collect();
         let [prev, text, expect, convention] = columns[..] else { panic!("{row}") };
         lines += 1;
@@ -98,9 +98,17 @@ fn examples_give_their_counts_and_rejections() {
             None => produced.map_or("nothing".to_owned(), |count| count.to_string()),
         };
         if got != expect {
-            wrong.push(format!("{prev:>3} | {text} | expected {expect}, got {got}; {errors:?}"));
+            wrong.push(format!(
+                "{prev:>3} | {text} | {convention} | expected {expect}, got {got}; {errors:?}"
+            ));
         }
     }
+    (lines, wrong)
+}
+
+#[test]
+fn examples_give_their_counts_and_rejections() {
+    let (lines, wrong) = run(EXAMPLES);
     assert_eq!(lines, 55);
     assert!(wrong.is_empty(), "{} of {lines}:\n{}", wrong.len(), wrong.join("\n"));
 }

@@ -122,17 +122,10 @@ impl Plan {
         let rise = f64::from(round.levels) * high;
         // Within a round the spiral rises by one row; what short rows pile up on it is left free behind its end.
         let foot = |turn: f64| inner + high * (turn - begin).clamp(0.0, 1.2);
-        let mut from = 0;
         let mut nth = 0.0;
         let mut ground: Option<(f64, f64)> = None;
         self.end = begin;
-        while from < round.stitches.len() {
-            let behind = round.stitches.get(from + 1..).unwrap_or_default();
-            let to = behind
-                .iter()
-                .position(|worked| worked.turned)
-                .map_or(round.stitches.len(), |at| from + 1 + at);
-            let pass = round.stitches.get(from..to).unwrap_or_default();
+        for pass in round.passes() {
             let back = pass.first().is_some_and(|worked| worked.back);
             let centers = self.lay(pass, back, &course, &mut nth);
             for (worked, center) in pass.iter().zip(&centers) {
@@ -150,7 +143,6 @@ impl Plan {
                 let low = foot(turn) + (f64::from(first.level) + 0.5) * high;
                 sheet.arrow(point(turn, low), up(turn + 0.25 * sign));
             }
-            from = to;
         }
         if let Some((from, to)) = ground {
             let parts = ((to - from) * 72.0).ceil().max(1.0);

@@ -116,16 +116,9 @@ impl Plan {
         let high = kinds.fold(1.0, f64::max);
         let ground = self.height;
         let forward = if round.reversed { -1.0 } else { 1.0 };
-        let mut from = 0;
         let mut ends: Option<(f64, f64)> = None;
         let mut begin = None;
-        while from < round.stitches.len() {
-            let behind = round.stitches.get(from + 1..).unwrap_or_default();
-            let to = behind
-                .iter()
-                .position(|worked| worked.turned)
-                .map_or(round.stitches.len(), |at| from + 1 + at);
-            let pass = round.stitches.get(from..to).unwrap_or_default();
+        for pass in round.passes() {
             let sign = if pass.first().is_some_and(|worked| worked.back) { -forward } else { forward };
             let centers = self.lay(pass, sign, ground, high);
             if let (Some(first), Some(center)) = (pass.first(), centers.first()) {
@@ -144,7 +137,6 @@ impl Plan {
                 }
             }
             raised(pass, &centers, ground, high, sheet);
-            from = to;
         }
         if let Some((least, most)) = ends {
             let count = format!("({})", round.made);

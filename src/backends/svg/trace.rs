@@ -41,6 +41,13 @@ pub(crate) struct Round {
     pub(crate) levels: u32,
 }
 
+impl Round {
+    /// Its stitches from turn to turn.
+    pub(crate) fn passes(&self) -> impl Iterator<Item = &[Worked]> {
+        self.stitches.chunk_by(|_, next| !next.turned)
+    }
+}
+
 /// One stitch in its place.
 #[derive(Debug)]
 pub(crate) struct Worked {

@@ -317,6 +317,12 @@ impl Checker<'_> {
         self.remarks(part, &item, row, &solved);
         let times = item.times();
         let leaves = solved.leaves(part.flat);
+        if times > 1 && solved.lowered.begin.is_some() {
+            let message = format!("a part begins once, not in each of {times} rounds");
+            let at = item.label.map_or(item.at, |label| label.at);
+            let found = Diagnostic::new(Code::RangeChangesCount, message).in_round(&part.name, item.first);
+            self.say(found.help("give the beginning a round of its own"), at, "");
+        }
         if times > 1 && state.have != Some(leaves) && solved.lowered.begin.is_none() {
             let have = state.have.unwrap_or(0);
             let message =
