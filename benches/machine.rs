@@ -14,7 +14,7 @@ fn tube(stitches: u32) -> Program {
     let work = |stitch: Stitch, times: u32| Op::Work { stitch, times };
     let shaped = |stitch: Stitch, plain: u32| -> Block {
         let body: Block = [work(Stitch::SC, plain), work(stitch, 1)].into_iter().collect();
-        [Op::Repeat { body, times: 6 }].into_iter().collect()
+        [Op::repeat(body, 6)].into_iter().collect()
     };
     let rows = (0..stitches / 60).map(|row| {
         Row::new(match row % 12 {

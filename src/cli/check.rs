@@ -205,7 +205,7 @@ fn file(path: &str, held: &Held, found: &[Diagnostic], sources: &Sources<'_>) ->
         .collect::<Result<Vec<_>, _>>()
         .map_err(|error| Failure::usage(error.to_string()))?;
     let round = |round: &Round| {
-        json!({ "label": round.label, "first": round.first, "last": round.last, "consumes": round.consumes,
+        json!({ "label": round.label(), "first": round.first, "last": round.last, "consumes": round.consumes,
             "produces": round.produces, "stated": round.stated })
     };
     let part = |part: &PartRounds| json!({ "name": part.name, "rounds": part.rounds.iter().map(round).collect::<Vec<Value>>() });
@@ -222,11 +222,10 @@ fn file(path: &str, held: &Held, found: &[Diagnostic], sources: &Sources<'_>) ->
 fn parts(program: &Program) -> Vec<PartRounds> {
     let round = |(first, row): (u32, &Row)| {
         let last = first.saturating_add(row.times.saturating_sub(1));
-        let label = if first == last { first.to_string() } else { format!("{first}-{last}") };
         let (consumes, produces) = loops(row);
         let stated = row.stated.map(|(count, _)| count);
         let (consumes, produces) = (u32::try_from(consumes).ok(), u32::try_from(produces).ok());
-        Round { label, first, last, consumes, produces, stated }
+        Round { first, last, consumes, produces, stated }
     };
     let part = |part: &Part| PartRounds {
         name: part.name.clone(),

@@ -304,7 +304,7 @@ fn renamed(block: &Block, index: &impl Fn(PartId) -> PartId) -> Block {
     for (op, span) in block.spanned() {
         let op = match op {
             Op::Hold { loops, by } => Op::Hold { loops: *loops, by: index(*by) },
-            Op::Repeat { body, times } => Op::Repeat { body: renamed(body, index), times: *times },
+            Op::Repeat { body, times } => Op::repeat(renamed(body, index), *times),
             Op::Work { .. } | Op::Turn(_) | Op::Leave { .. } | Op::Color(_) => op.clone(),
         };
         out.push(op, span);

@@ -2,6 +2,7 @@
 
 use super::Stitch;
 use crate::diag::Span;
+use smallvec::{SmallVec, smallvec};
 
 /// Index of a part in [`Pattern::parts`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -174,8 +175,8 @@ impl Row {
 /// Operations with their places beside them, so that equality and passes never trip over spans.
 #[derive(Clone, Debug, Default)]
 pub struct Block {
-    ops: Vec<Op>,
-    spans: Vec<Span>,
+    ops: SmallVec<[Op; 2]>,
+    spans: SmallVec<[Span; 2]>,
 }
 
 impl PartialEq for Block {
@@ -204,8 +205,8 @@ pub enum Op {
     },
     /// A repeated sequence.
     Repeat {
-        /// What is repeated; not empty.
-        body: Block,
+        /// What is repeated; not empty. Boxed, so that a run takes little room.
+        body: Box<Block>,
         /// How often; at least 1.
         times: u32,
     },
@@ -225,6 +226,13 @@ pub enum Op {
     },
     /// The yarn changes to this color of [`super::Program::colors`].
     Color(u16),
+}
+
+impl Op {
+    /// A repeated sequence.
+    pub fn repeat(body: Block, times: u32) -> Self {
+        Self::Repeat { body: Box::new(body), times }
+    }
 }
 
 /// The direction of work after a turn.
@@ -278,7 +286,7 @@ impl Block {
     #[must_use]
     pub fn split_off(&mut self, at: usize) -> Self {
         let at = at.min(self.ops.len());
-        Self { ops: self.ops.split_off(at), spans: self.spans.split_off(at) }
+        Self { ops: self.ops.drain(at..).collect(), spans: self.spans.drain(at..).collect() }
     }
     /// Adds all operations of another block.
     pub fn append(&mut self, mut other: Self) {
@@ -291,7 +299,7 @@ impl Block {
     }
     /// The meaning: every step in order, lazily.
     pub fn steps(&self) -> Steps<'_> {
-        Steps { stack: vec![Frame { ops: &self.ops, next: 0, done: 0, times: 1 }] }
+        Steps { stack: smallvec![Frame { ops: &self.ops, next: 0, done: 0, times: 1 }] }
     }
     /// Number of steps without walking them; `None` on overflow.
     pub fn step_count(&self) -> Option<u64> {
@@ -308,7 +316,7 @@ impl Block {
 /// Iterator over the steps of a block.
 #[derive(Clone, Debug)]
 pub struct Steps<'b> {
-    stack: Vec<Frame<'b>>,
+    stack: SmallVec<[Frame<'b>; 2]>,
 }
 
 #[derive(Clone, Debug)]

@@ -273,7 +273,7 @@ impl Folder {
             if let Some(period) = period {
                 let mut body = Block::default();
                 let span = self.write(from, from + period, &mut body);
-                out.push(Op::Repeat { body, times: (to - from) / period }, span);
+                out.push(Op::repeat(body, (to - from) / period), span);
             } else {
                 self.write(from, to, out);
             }

@@ -52,7 +52,7 @@ fn add(block: &Block, out: &mut Counted) {
                 let body = count(body);
                 match folded_run(&body, *times) {
                     Some(run) => out.push(run, span),
-                    None => out.push(Op::Repeat { body, times: *times }, span),
+                    None => out.push(Op::repeat(body, *times), span),
                 }
             }
             Op::Work { .. } | Op::Turn(_) | Op::Hold { .. } | Op::Leave { .. } | Op::Color(_) => {

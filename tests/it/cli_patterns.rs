@@ -214,7 +214,7 @@ fn numbers_are_not_believed() {
         assert_eq!(status, 1, "{text}: {found}");
         assert!(found.contains("error"), "{text}: {found}");
     }
-    let (status, _) = check("(".repeat(100_000));
+    let (status, _) = check(format!("6 sc {}", "(".repeat(100_000)));
     assert_eq!(status, 1);
 }
 

@@ -35,7 +35,7 @@ fn ball() -> Program {
     let each = |k: u32, stitch: Stitch| {
         let body: Block =
             if k > 0 { vec![sc(k), work(stitch, 1)] } else { vec![work(stitch, 1)] }.into_iter().collect();
-        vec![Op::Repeat { body, times: 6 }]
+        vec![Op::repeat(body, 6)]
     };
     let mut rows: Vec<Vec<Op>> = (0..5).map(|k| each(k, Stitch::INC)).collect();
     rows.extend((0..5).map(|_| vec![sc(36)]));

@@ -88,7 +88,7 @@ fn mixed_gaps_and_mixed_shaping_fold_too() {
 #[test]
 fn short_rows_cut_a_row_into_stretches() {
     assert_eq!(fold("9 9 < 6 > 6 1 i 1 i 1 i"), "18 sc, <-, 6 sc, ->, 6 sc, (sc, inc) x 3");
-    let hidden = Op::Repeat { body: raw("9 < 4 > 4").body, times: 2 };
+    let hidden = Op::repeat(raw("9 < 4 > 4").body, 2);
     assert_eq!(
         folded(vec![Row::new([hidden].into_iter().collect())]),
         ["9 sc, <-, 4 sc, ->, 13 sc, <-, 4 sc, ->, 4 sc"]
@@ -105,7 +105,7 @@ fn equal_rounds_share_a_line() {
 
 #[test]
 fn a_huge_repeat_is_left_alone() {
-    let huge = Op::Repeat { body: raw("1 i").body, times: u32::MAX };
+    let huge = Op::repeat(raw("1 i").body, u32::MAX);
     assert_eq!(folded(vec![Row::new([huge].into_iter().collect())]), ["(sc, inc) x 4294967295"]);
 }
 
@@ -135,7 +135,7 @@ fn op() -> impl Strategy<Value = Op> {
     ];
     leaf.prop_recursive(3, 40, 6, |inner| {
         (prop::collection::vec(inner, 1..6), 1_u32..5)
-            .prop_map(|(ops, times)| Op::Repeat { body: ops.into_iter().collect(), times })
+            .prop_map(|(ops, times)| Op::repeat(ops.into_iter().collect(), times))
     })
 }
 

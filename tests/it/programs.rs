@@ -349,7 +349,7 @@ fn work(stitch: Stitch, times: u32) -> Op {
 }
 
 fn repeat(body: impl IntoIterator<Item = Op>, times: u32) -> Op {
-    Op::Repeat { body: body.into_iter().collect::<Block>(), times }
+    Op::repeat(body.into_iter().collect::<Block>(), times)
 }
 
 /// A round whose stitches can be worked around, and how many it has.

@@ -268,7 +268,7 @@ impl Maker<'_, '_> {
                 if !body.is_empty() && times > 0 {
                     self.ahead -= works * times;
                     self.behind += makes * times;
-                    out.push(Op::Repeat { body, times }, picot::diag::Span::NONE);
+                    out.push(Op::repeat(body, times), picot::diag::Span::NONE);
                 }
             }
             14 if self.colors > 0 => {
@@ -410,7 +410,7 @@ fn part(
                 have += 2 * b;
                 let work = Op::Work { stitch, times: 1 };
                 let body = [work, Op::Work { stitch: chain, times: 1 }].into_iter().collect();
-                ops.insert(0, Op::Repeat { body, times: b });
+                ops.insert(0, Op::repeat(body, b));
             }
             Some(ops)
         }

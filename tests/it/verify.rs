@@ -17,7 +17,7 @@ fn work(stitch: Stitch, times: u32) -> Op {
     Op::Work { stitch, times }
 }
 fn repeat(times: u32, ops: impl IntoIterator<Item = Op>) -> Op {
-    Op::Repeat { body: ops.into_iter().collect(), times }
+    Op::repeat(ops.into_iter().collect(), times)
 }
 fn row(ops: impl IntoIterator<Item = Op>) -> Row {
     Row::new(ops.into_iter().collect())
@@ -308,7 +308,7 @@ proptest! {
                 6 => { stack.push(Block::default()); continue }
                 _ => {
                     let body = if stack.len() > 1 { stack.pop().unwrap() } else { continue };
-                    Op::Repeat { body, times }
+                    Op::repeat(body, times)
                 }
             };
             stack.last_mut().unwrap().push(op, picot::diag::Span::NONE);

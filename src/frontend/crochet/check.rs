@@ -17,10 +17,8 @@ use std::collections::BTreeMap;
 pub const MAX_FILE_LOOPS: u64 = 10_000_000;
 
 /// One line of rounds, as counted.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Round {
-    /// The number or numbers as written; empty for a line without.
-    pub label: String,
     /// First round; 0 for a line without a number.
     pub first: u32,
     /// Last round.
@@ -31,6 +29,17 @@ pub struct Round {
     pub produces: Option<u32>,
     /// The count that is written.
     pub stated: Option<u32>,
+}
+
+impl Round {
+    /// The number or numbers: `7`, `7-12`; empty for a line without.
+    pub fn label(&self) -> String {
+        match (self.first, self.last) {
+            (0, _) => String::new(),
+            (first, last) if last > first => format!("{first}-{last}"),
+            (first, _) => first.to_string(),
+        }
+    }
 }
 
 /// The rounds of a part.
@@ -118,7 +127,11 @@ pub(super) fn check(document: &Document<'_>, options: &Conventions, sink: &mut S
     for (index, part) in planned.iter().enumerate() {
         names.entry(fold_name(&part.name)).or_insert(PartId(index as u32));
     }
-    let absent = super::origins::absent_parts(&planned, document.text, &mut names);
+    let absent = if document.tree.holds {
+        super::origins::absent_parts(&planned, document.text, &mut names)
+    } else {
+        Vec::new()
+    };
     let file = File {
         source: document.source,
         text: document.text,
@@ -390,7 +403,7 @@ impl Checker<'_> {
 
     /// Notes the loops that a row sets aside.
     fn holds(&mut self, block: &Block, from: PartId, row: u32) {
-        if !block.ops().iter().any(|op| matches!(op, Op::Hold { .. } | Op::Repeat { .. })) {
+        if !block.ops().iter().any(|op| matches!(op, Op::Hold { .. })) {
             return;
         }
         let mut worked = 0_i64;
@@ -517,13 +530,8 @@ impl Checker<'_> {
 fn round(item: &Item<'_>, solved: Option<&Solved>, stated: Option<u32>) -> Round {
     let clip = |count: i64| u32::try_from(count).ok();
     let (first, last) = (item.first.unwrap_or(0), item.last.unwrap_or(0));
-    let label = match (item.first, item.last) {
-        (Some(first), Some(last)) if last > first => format!("{first}-{last}"),
-        (Some(first), _) => first.to_string(),
-        _ => String::new(),
-    };
     let consumes = solved.and_then(|solved| clip(solved.works));
-    Round { label, first, last, consumes, produces: solved.and_then(|solved| clip(solved.makes)), stated }
+    Round { first, last, consumes, produces: solved.and_then(|solved| clip(solved.makes)), stated }
 }
 
 pub(super) fn body_at(body: &[Node], or: At) -> At {

@@ -10,10 +10,11 @@ use nom::branch::alt;
 use nom::combinator::{map, opt};
 use nom::sequence::preceded;
 use nom::{Err, Parser};
+use smallvec::SmallVec;
 
 /// Clauses with what separates them, up to what is no clause.
 pub(crate) fn body(input: Tokens<'_>) -> Res<'_, Vec<Node>> {
-    let mut nodes: Vec<Node> = Vec::new();
+    let mut nodes: SmallVec<[Node; 6]> = SmallVec::new();
     let (mut input, mut back) = (input, false);
     loop {
         let outer = input.depth == 0;
@@ -46,7 +47,8 @@ pub(crate) fn body(input: Tokens<'_>) -> Res<'_, Vec<Node>> {
             Err(error) => return Err(error),
         }
     }
-    Ok((input, nodes))
+    // What stays in the tree takes no more room than it needs.
+    Ok((input, nodes.into_vec()))
 }
 
 fn clause(input: Tokens<'_>) -> Res<'_, Clause> {

@@ -78,7 +78,7 @@ pub(crate) fn close(
             [Op::Work { stitch, times: once }] if once.checked_mul(times).is_some() => {
                 block.push(Op::Work { stitch: *stitch, times: once * times }, span);
             }
-            _ => block.push(Op::Repeat { body: site.body, times }, span),
+            _ => block.push(Op::repeat(site.body, times), span),
         }
     }
     if let Some(partial) = site.partial {

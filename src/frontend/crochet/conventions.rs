@@ -64,14 +64,14 @@ settings! {
 /// The settings in force, and which of them someone declared.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Conventions {
-    values: Vec<(u8, bool)>,
+    values: [(u8, bool); Setting::ALL.len()],
     /// Language of the text until the file names one.
     pub language: Language,
 }
 
 impl Default for Conventions {
     fn default() -> Self {
-        Self { values: vec![(0, false); Setting::ALL.len()], language: Language::English }
+        Self { values: [(0, false); Setting::ALL.len()], language: Language::English }
     }
 }
 

@@ -86,10 +86,10 @@ pub(crate) fn gather(block: &Block, first: u16) -> Option<Block> {
                     }
                     out.append(head);
                     if *times > 1 {
-                        out.push(Op::Repeat { body: rest, times: times - 1 }, span);
+                        out.push(Op::repeat(rest, times - 1), span);
                     }
                 } else {
-                    out.push(Op::Repeat { body: rest, times: *times }, span);
+                    out.push(Op::repeat(rest, *times), span);
                 }
             }
             Op::Color(color) => out.push(Op::Color(*color), span),
@@ -107,7 +107,7 @@ pub(crate) fn space(block: &Block) -> Block {
             Op::Work { stitch, times } if stitch.kind != Kind::Ch => {
                 Op::Work { stitch: Stitch { entry: Entry::Space, ..*stitch }, times: *times }
             }
-            Op::Repeat { body, times } => Op::Repeat { body: space(body), times: *times },
+            Op::Repeat { body, times } => Op::repeat(space(body), *times),
             other => other.clone(),
         };
         out.push(op, span);

@@ -119,7 +119,7 @@ impl Lower<'_> {
         } else if times == 1 {
             out.append(block);
         } else {
-            out.push(Op::Repeat { body: block, times }, span);
+            out.push(Op::repeat(block, times), span);
         }
         Ok(())
     }
@@ -216,6 +216,6 @@ impl Lower<'_> {
 
     fn push_repeat(&mut self, body: Block, times: u32, at: At, out: &mut Block) {
         let span = self.span(at);
-        if times == 1 { out.append(body) } else { out.push(Op::Repeat { body, times }, span) }
+        if times == 1 { out.append(body) } else { out.push(Op::repeat(body, times), span) }
     }
 }

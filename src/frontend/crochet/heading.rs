@@ -81,7 +81,7 @@ pub(super) fn terms(
     conventions: &Conventions,
     found: &mut Vec<Diagnostic>,
 ) -> Terms {
-    let evidence = super::terms::evidence(&document.tree);
+    let evidence = document.tree.evidence;
     let span = |at: At| document.source.span(at.range());
     let said = |at: At| document.text.get(at.range()).unwrap_or_default();
     let declared = match conventions.get(Setting::Terms) {

@@ -278,7 +278,8 @@ impl Lexer<'_> {
             b'=' if self.byte(1) == Some(b'>') => self.key(Key::FatArrow, 2),
             b'=' => self.key(Key::Eq, 1),
             b'-' if self.byte(1) == Some(b'>') => self.key(Key::Fwd, 2),
-            b'-' if self.byte(1) == Some(b'-') => self.key(Key::Dash, 2),
+            // In `ch--> 3 sc` the arrow has its own hyphen.
+            b'-' if self.byte(1) == Some(b'-') && self.byte(2) != Some(b'>') => self.key(Key::Dash, 2),
             b'-' => self.minus(1),
             b'"' => self.quoted(),
             0..=0x1f | 0x7f => return Err(At::new(self.at, self.at + 1)),

@@ -3,7 +3,8 @@
 use super::lex::{self, At, Tok, Token};
 use super::parse::{Context, Fault, FaultKind, Tokens};
 use super::row;
-use super::syntax::{Content, Header, Line, Num, Pair};
+use super::syntax::{Clause, Content, Header, Line, Node, Num, Pair};
+use super::terms::Evidence;
 use super::words::{Meaning, Words, fold_word};
 use crate::ir::Language;
 use std::cell::Cell;
@@ -31,6 +32,10 @@ pub(crate) struct Tree {
     pub language: Language,
     pub colors: Vec<String>,
     pub defs: Vec<Definition>,
+    /// What the words of the rows tell of their terms; found here while they are at hand.
+    pub evidence: Evidence,
+    /// A row sets loops aside for another part.
+    pub holds: bool,
 }
 
 /// A stitch that a file declares.
@@ -43,8 +48,15 @@ pub(crate) struct Definition {
 
 /// Parses a whole text. `language` applies until the file names its own.
 pub(crate) fn parse(text: &str, language: Language) -> (Tree, Words) {
-    let mut tree =
-        Tree { lines: Vec::new(), faults: Vec::new(), language, colors: Vec::new(), defs: Vec::new() };
+    let mut tree = Tree {
+        lines: Vec::new(),
+        faults: Vec::new(),
+        language,
+        colors: Vec::new(),
+        defs: Vec::new(),
+        evidence: Evidence::default(),
+        holds: false,
+    };
     let mut words = Words::new(language);
     let mut tokens: Vec<Token> = Vec::new();
     let mut heading = false;
@@ -57,7 +69,9 @@ pub(crate) fn parse(text: &str, language: Language) -> (Tree, Words) {
         }
         let raw = text.get(start..end).unwrap_or_default();
         let (content_end, remark) = remark(raw);
-        let what = if raw.trim().is_empty() {
+        let what = if is_round(raw) {
+            line(text, start, start + content_end, &words, &mut tokens, &mut heading, &mut tree.faults)
+        } else if raw.trim_start().is_empty() {
             heading = false;
             Content::Blank
         } else if is_comment(raw) {
@@ -67,11 +81,24 @@ pub(crate) fn parse(text: &str, language: Language) -> (Tree, Words) {
         } else {
             line(text, start, start + content_end, &words, &mut tokens, &mut heading, &mut tree.faults)
         };
+        if let Content::Row(row) = &what {
+            tree.evidence.nodes(&row.body);
+            tree.holds |= holds(&row.body);
+        }
         let remark =
             remark.map(|from| At::new(start + from, end)).filter(|_| !matches!(what, Content::Comment));
         tree.lines.push(Line { at, what, remark });
     }
     (tree, words)
+}
+
+/// True when a clause sets loops aside.
+fn holds(nodes: &[Node]) -> bool {
+    nodes.iter().any(|node| match &node.what {
+        Clause::Hold { .. } => true,
+        Clause::Group { body, .. } | Clause::Star { body, .. } => holds(body),
+        _ => false,
+    })
 }
 
 /// Starts and ends of lines; a line ends at LF, CR LF, CR, and at the separators of Unicode.
@@ -81,7 +108,7 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, usize)> {
     std::iter::from_fn(move || {
         let start = next?;
         let rest = bytes.get(start..)?;
-        let found = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r' | 0x0b | 0x0c));
+        let found = rest.iter().position(|byte| matches!(byte, b'\n'..=b'\r'));
         if let Some(length) = found {
             let end = start + length;
             let two = bytes.get(end..end + 2) == Some(b"\r\n");
@@ -96,11 +123,25 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, usize)> {
 
 /// Where the content of a line ends, and where a `//` remark begins.
 fn remark(raw: &str) -> (usize, Option<usize>) {
-    match raw.find("//") {
+    let slashes = raw.find('/').and_then(|first| Some(first + raw.get(first..)?.find("//")?));
+    match slashes {
         // A web address is no remark.
         Some(at) if !raw.get(..at).is_some_and(|before| before.ends_with(':')) => (at, Some(at)),
         _ => (raw.len(), None),
     }
+}
+
+/// True for the line that patterns are made of, which no header or heading begins like: `Rnd 7`, `Rows 3`.
+fn is_round(raw: &str) -> bool {
+    let bytes = raw.as_bytes().trim_ascii_start();
+    let rest = match bytes.split_first_chunk() {
+        Some((word, rest)) if [*b"rnd", *b"row"].contains(&word.map(|byte| byte.to_ascii_lowercase())) => {
+            rest
+        }
+        _ => return false,
+    };
+    let rest = rest.strip_prefix(b"s").unwrap_or(rest).trim_ascii_start();
+    rest.first().is_some_and(u8::is_ascii_digit)
 }
 
 fn is_comment(raw: &str) -> bool {
@@ -287,7 +328,7 @@ fn line(
     if labeled {
         *heading = false;
     }
-    let raw = text.get(start..end).unwrap_or_default().trim();
+    let raw = text.get(start..end).filter(|_| !labeled).unwrap_or_default().trim();
     if LISTS.iter().any(|name| raw.trim_end_matches(':').trim_end().eq_ignore_ascii_case(name)) {
         *heading = true;
         return Content::Comment;

@@ -8,6 +8,7 @@ use super::syntax::{Clause, Count, Fill, Node, Num, Place, Shape, Word};
 use super::words::Spelled;
 use crate::diag::{Code, Source};
 use crate::ir::{Block, Direction, Entry, Kind, Op, PartId, Segment, Stitch, Terms};
+use smallvec::SmallVec;
 use std::collections::BTreeMap;
 
 /// Why a row has no meaning.
@@ -117,7 +118,7 @@ pub(crate) struct Lowered {
     /// A count that stood as the last clause.
     pub tail: Option<Num>,
     /// Settings that the outcome depends on.
-    pub touched: Vec<Setting>,
+    pub touched: SmallVec<[Setting; 8]>,
     /// A setting that has to be decided first.
     pub undecided: Option<Setting>,
     pub evenly: Option<At>,

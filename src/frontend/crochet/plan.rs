@@ -3,8 +3,12 @@
 use super::gather::is_work;
 use super::lex::At;
 use super::lines::{Tree, fold_name};
-use super::syntax::{AgainLine, Clause, Content, Label, Origin, PartHead, RowKind, RowLine};
+use super::syntax::{AgainLine, Clause, Content, Label, Num, Origin, PartHead, RowKind, RowLine};
 use crate::diag::{Code, Diagnostic, Source};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Most rows that lines such as `Rows 6-9: rep rows 4 and 5` list in a file.
+const MAX_ROWS: usize = 1_000_000;
 
 /// A part and its rows.
 pub(crate) struct Part<'t> {
@@ -14,6 +18,9 @@ pub(crate) struct Part<'t> {
     pub items: Vec<Item<'t>>,
     pub flat: bool,
     pub joined: bool,
+    /// First numbers of the rows with their places in `items`, as far as they are entered.
+    index: BTreeMap<u32, usize>,
+    indexed: usize,
 }
 
 /// One row, or several equal ones.
@@ -26,6 +33,37 @@ pub(crate) struct Item<'t> {
     pub label: Option<&'t Label>,
     /// The whole line.
     pub at: At,
+}
+
+impl<'t> Part<'t> {
+    fn new(name: String, head: Option<&'t PartHead>, at: At) -> Self {
+        Self {
+            name,
+            head,
+            at,
+            items: Vec::new(),
+            flat: false,
+            joined: false,
+            index: BTreeMap::new(),
+            indexed: 0,
+        }
+    }
+
+    /// The row of this number, the last where there are several. The index is made when it is first asked for.
+    fn row(&mut self, number: u32) -> Option<&'t RowLine> {
+        for (at, item) in self.items.iter().enumerate().skip(self.indexed) {
+            if let (Some(first), What::Row(_) | What::Again(..)) = (item.first, item.what) {
+                self.index.insert(first, at);
+            }
+        }
+        self.indexed = self.items.len();
+        let (_, at) = self.index.range(..=number).next_back()?;
+        let item = self.items.get(*at).filter(|item| item.last.is_some_and(|last| last >= number))?;
+        match item.what {
+            What::Row(row) | What::Again(row, _) => Some(row),
+            What::Broken(_) => None,
+        }
+    }
 }
 
 impl Item<'_> {
@@ -57,37 +95,31 @@ pub(crate) fn parts<'t>(
     found: &mut Vec<Diagnostic>,
 ) -> Vec<Part<'t>> {
     let mut parts: Vec<Part<'t>> = Vec::new();
-    let mut unnamed = 0;
+    let mut names = BTreeSet::new();
+    let mut room = MAX_ROWS;
     for (index, line) in tree.lines.iter().enumerate() {
         let above = index.checked_sub(1).and_then(|index| tree.lines.get(index)).map(|line| line.at);
         match &line.what {
             Content::Part(head) => {
                 let name = text.get(head.name.range()).unwrap_or_default().trim_matches('"').to_owned();
-                if parts.iter().any(|part| fold_name(&part.name) == fold_name(&name)) {
+                if !names.insert(fold_name(&name)) {
                     let message = format!("part `{name}` comes twice");
                     found.push(
                         Diagnostic::new(Code::RoundTwice, message).at(source.span(head.name.range()), ""),
                     );
                 }
-                parts.push(Part {
-                    name,
-                    head: Some(head),
-                    at: line.at,
-                    items: Vec::new(),
-                    flat: false,
-                    joined: false,
-                });
+                parts.push(Part::new(name, Some(head), line.at));
                 continue;
             }
             Content::Row(row) => {
                 let begins = row.label.as_ref().is_some_and(|label| label.first() == 1);
                 let again =
-                    parts.last().is_some_and(|part| part.items.iter().any(|item| item.first.is_some()));
+                    || parts.last().is_some_and(|part| part.items.iter().any(|item| item.first.is_some()));
                 // The same line twice in a row is a slip, not a new part.
-                let twice = above.is_some_and(|above| text.get(above.range()) == text.get(line.at.range()));
-                if begins && again && !twice && starts(row) {
+                let twice =
+                    || above.is_some_and(|above| text.get(above.range()) == text.get(line.at.range()));
+                if begins && again() && !twice() && starts(row) {
                     let span = source.span(row.label.as_ref().map_or(line.at, |label| label.at).range());
-                    unnamed += 1;
                     let name = format!("piece {}", parts.len() + 1);
                     if restart {
                         let message = format!("round 1 again: a new part, called `{name}` here");
@@ -99,28 +131,21 @@ pub(crate) fn parts<'t>(
                     } else {
                         found.push(Diagnostic::new(Code::RoundTwice, "round 1 comes twice").at(span, ""));
                     }
-                    parts.push(Part {
-                        name,
-                        head: None,
-                        at: line.at,
-                        items: Vec::new(),
-                        flat: false,
-                        joined: false,
-                    });
+                    names.insert(fold_name(&name));
+                    parts.push(Part::new(name, None, line.at));
                 }
             }
             Content::Again(_) | Content::Broken { label: Some(_), .. } => {}
             _ => continue,
         }
         if parts.is_empty() {
-            unnamed += 1;
             let name = "piece".to_owned();
-            parts.push(Part { name, head: None, at: line.at, items: Vec::new(), flat: false, joined: false });
+            names.insert(fold_name(&name));
+            parts.push(Part::new(name, None, line.at));
         }
         let Some(part) = parts.last_mut() else { continue };
-        add(part, line.at, &line.what, source, found);
+        add(part, line.at, &line.what, source, &mut room, found);
     }
-    let _ = unnamed;
     for part in &mut parts {
         order(part, source, found);
         part.flat = is_flat(part);
@@ -148,7 +173,14 @@ fn starts(row: &RowLine) -> bool {
     })
 }
 
-fn add<'t>(part: &mut Part<'t>, at: At, content: &'t Content, source: &Source, found: &mut Vec<Diagnostic>) {
+fn add<'t>(
+    part: &mut Part<'t>,
+    at: At,
+    content: &'t Content,
+    source: &Source,
+    room: &mut usize,
+    found: &mut Vec<Diagnostic>,
+) {
     match content {
         Content::Row(row) => match &row.label {
             Some(label) => {
@@ -167,7 +199,7 @@ fn add<'t>(part: &mut Part<'t>, at: At, content: &'t Content, source: &Source, f
             }
             None => part.items.push(Item { first: None, last: None, what: What::Row(row), label: None, at }),
         },
-        Content::Again(again) => repeat(part, at, again, source, found),
+        Content::Again(again) => repeat(part, at, again, source, room, found),
         Content::Broken { label: Some(label), count } => {
             let what = What::Broken(count.as_ref().and_then(super::gather::stated).map(|n| n.value));
             for (first, last) in &label.set {
@@ -223,30 +255,19 @@ fn repeat<'t>(
     at: At,
     again: &'t AgainLine,
     source: &Source,
+    room: &mut usize,
     found: &mut Vec<Diagnostic>,
 ) {
     let Some(label) = &again.label else { return };
     check_range(label, &part.name, source, found);
-    let mut numbers: Vec<u32> = Vec::new();
-    for (first, last) in &again.set {
-        let last = last.map_or(first.value, |last| last.value);
-        numbers.extend((first.value..=last.max(first.value)).take(10_000));
-    }
-    let rows: u64 = label
-        .set
-        .iter()
-        .map(|(first, last)| {
-            u64::from(last.map_or(first.value, |last| last.value).saturating_sub(first.value)) + 1
-        })
-        .sum();
+    let (rows, repeated) = (numbered(&label.set), numbered(&again.set));
     let passes = again.times.map(|times| u64::from(times.value) + u64::from(again.more));
-    let fits = passes.map_or(rows.is_multiple_of(numbers.len().max(1) as u64), |passes| {
-        passes * numbers.len() as u64 == rows
-    });
+    let fits =
+        passes.map_or(rows.is_multiple_of(repeated), |passes| passes.checked_mul(repeated) == Some(rows));
     if !fits {
         let message = format!(
             "{rows} rows are listed, the repeat gives {}",
-            passes.unwrap_or(1) * numbers.len() as u64
+            passes.unwrap_or(1).saturating_mul(repeated)
         );
         found.push(
             Diagnostic::new(Code::BadRange, message)
@@ -254,18 +275,15 @@ fn repeat<'t>(
                 .in_round(&part.name, Some(label.first())),
         );
     }
-    let all =
-        label.set.iter().flat_map(|(first, last)| first.value..=last.map_or(first.value, |last| last.value));
-    for (index, number) in all.take(100_000).enumerate() {
-        let Some(wanted) = numbers.get(index % numbers.len().max(1)) else { return };
-        let known = part.items.iter().rev().find_map(|item| {
-            let inside = item.first.is_some_and(|first| first <= *wanted)
-                && item.last.is_some_and(|last| last >= *wanted);
-            match item.what {
-                What::Row(row) | What::Again(row, _) if inside => Some(row),
-                _ => None,
-            }
-        });
+    for (number, wanted) in each(&label.set).zip(each(&again.set).cycle()) {
+        *room = room.saturating_sub(1);
+        if *room == 0 {
+            let message = format!("repeats list more than {MAX_ROWS} rows");
+            let found_here = Diagnostic::new(Code::Limit, message).at(source.span(label.at.range()), "");
+            found.push(found_here.in_round(&part.name, Some(number)));
+            return;
+        }
+        let known = part.row(wanted);
         let Some(row) = known else {
             let message = format!("row {wanted} does not exist before this line");
             found.push(
@@ -284,6 +302,20 @@ fn repeat<'t>(
         };
         part.items.push(item);
     }
+}
+
+/// How many rows a label lists.
+fn numbered(set: &[(Num, Option<Num>)]) -> u64 {
+    let count = |(first, last): &(Num, Option<Num>)| {
+        u64::from(last.map_or(first.value, |last| last.value).saturating_sub(first.value)) + 1
+    };
+    set.iter().map(count).sum()
+}
+
+/// The rows that a label lists.
+fn each(set: &[(Num, Option<Num>)]) -> impl Iterator<Item = u32> + Clone {
+    set.iter()
+        .flat_map(|(first, last)| first.value..=last.map_or(first.value, |last| last.value).max(first.value))
 }
 
 /// Puts the rows of lists such as `Rnds 5, 7 and 9` in their places and checks that no number is missing or double.

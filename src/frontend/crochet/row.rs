@@ -5,13 +5,14 @@ use super::lex::Tok;
 use super::parse::{FaultKind, Res, Tokens, any_key, int, key, name};
 use super::place::multiplier;
 use super::syntax::{
-    AgainLine, Clause, Content, Count, CountUnit, Label, Node, Num, Origin, PartHead, Piece, RowKind,
-    RowLine, Spot, Times,
+    AgainLine, Amounts, Clause, Content, Count, CountUnit, Label, Node, Num, Numbers, Origin, PartHead,
+    Piece, RowKind, RowLine, Spot, Times,
 };
 use super::words::Key;
 use nom::Parser;
 use nom::combinator::opt;
 use nom::sequence::{pair, preceded};
+use smallvec::smallvec;
 
 /// A row with its label and count; the whole line must be read.
 pub(crate) fn row(input: Tokens<'_>) -> Res<'_, Content> {
@@ -24,6 +25,7 @@ pub(crate) fn row(input: Tokens<'_>) -> Res<'_, Content> {
         Err(_) => (input, None),
     };
     if label.is_some()
+        && input.key(0) == Some(Key::Rep)
         && let Ok((rest, again)) = again(input, label.clone())
     {
         return Ok((rest, Content::Again(Box::new(again))));
@@ -37,7 +39,9 @@ pub(crate) fn row(input: Tokens<'_>) -> Res<'_, Content> {
     let (rest, count) = opt(|input| count(input, table)).parse(rest)?;
     let mut line = RowLine { label, body: nodes, count, cue: None };
     let rest = if table && rest.key(0) == Some(Key::Pipe) { rest.skip(1) } else { end_mark(rest) };
-    let rest = if line.count.is_some() { cue(rest, &mut line) } else { rest };
+    // Without a count only what cannot be an instruction may follow.
+    let stuffs = pause(pause(rest)).key(0) == Some(Key::Stuff);
+    let rest = if line.count.is_some() || stuffs { cue(rest, &mut line) } else { rest };
     if !rest.is_empty() {
         return leftover(rest);
     }
@@ -100,9 +104,9 @@ fn row_number(input: Tokens<'_>) -> Res<'_, Num> {
 }
 
 /// Row numbers: `5, 7 and 9`, `4-6`.
-fn row_set(input: Tokens<'_>) -> Res<'_, Vec<(Num, Option<Num>)>> {
+fn row_set(input: Tokens<'_>) -> Res<'_, Numbers> {
     let (mut rest, first) = row_number(input)?;
-    let mut set = vec![(first, None)];
+    let mut set: Numbers = smallvec![(first, None)];
     loop {
         let range = match rest.key(0) {
             Some(Key::Hyphen | Key::To) => true,
@@ -242,7 +246,7 @@ fn amount(input: Tokens<'_>) -> Res<'_, (Num, CountUnit)> {
 
 /// The count of a row.
 pub(crate) fn count(input: Tokens<'_>, table: bool) -> Res<'_, Count> {
-    let mut units = Vec::new();
+    let mut units = Amounts::new();
     match input.key(0) {
         Some(Key::Open(brace)) => {
             let (mut rest, first) = amount(input.skip(1))?;
@@ -286,10 +290,10 @@ pub(crate) fn count(input: Tokens<'_>, table: bool) -> Res<'_, Count> {
 fn said<'t>(start: Tokens<'t>, input: Tokens<'t>) -> Res<'t, Count> {
     let lead = (key(Key::You), opt(key(Key::Will)), opt(key(Key::Have)), opt(key(Key::Total)));
     let (rest, first) = preceded(lead, amount).parse(input)?;
-    finish(start, rest, vec![first])
+    finish(start, rest, smallvec![first])
 }
 
-fn finish<'t>(from: Tokens<'t>, rest: Tokens<'t>, units: Vec<(Num, CountUnit)>) -> Res<'t, Count> {
+fn finish<'t>(from: Tokens<'t>, rest: Tokens<'t>, units: Amounts) -> Res<'t, Count> {
     let Some((total, _)) = units.first().copied() else { return from.fail("a count") };
     Ok((rest, Count { total, units, at: from.until(rest) }))
 }

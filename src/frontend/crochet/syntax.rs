@@ -3,6 +3,7 @@
 use super::lex::At;
 use super::words::Spelled;
 use crate::ir::{Direction, Entry, Kind};
+use smallvec::SmallVec;
 
 /// A number and where it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,12 +125,17 @@ pub(crate) enum RowKind {
     None,
 }
 
+/// Row numbers: single ones and ranges.
+pub(crate) type Numbers = SmallVec<[(Num, Option<Num>); 1]>;
+/// Amounts with what they count.
+pub(crate) type Amounts = SmallVec<[(Num, CountUnit); 1]>;
+
 /// `Rnds 7-12 (6 rnds):`.
 #[derive(Clone, Debug)]
 pub(crate) struct Label {
     pub kind: RowKind,
     /// Single numbers and ranges.
-    pub set: Vec<(Num, Option<Num>)>,
+    pub set: Numbers,
     /// `(6 rnds)`.
     pub rounds: Option<Num>,
     /// Other tags in brackets.
@@ -149,7 +155,7 @@ impl Label {
 pub(crate) struct Count {
     pub total: Num,
     /// Further amounts with their unit: `6 dc, 2 ch-sp`.
-    pub units: Vec<(Num, CountUnit)>,
+    pub units: Amounts,
     pub at: At,
 }
 
@@ -176,7 +182,7 @@ pub(crate) struct RowLine {
 #[derive(Debug)]
 pub(crate) struct AgainLine {
     pub label: Option<Label>,
-    pub set: Vec<(Num, Option<Num>)>,
+    pub set: Numbers,
     pub times: Option<Num>,
     pub more: bool,
     pub count: Option<Count>,

@@ -1,8 +1,7 @@
 //! US or UK: the whole file is looked at, for one word alone does not tell.
 
 use super::lex::At;
-use super::lines::Tree;
-use super::syntax::{Clause, Content, Counts, Node, Num};
+use super::syntax::{Clause, Counts, Node, Num};
 use super::words::Spelled;
 use crate::ir::Terms;
 
@@ -49,7 +48,8 @@ impl Evidence {
         }
     }
 
-    fn nodes(&mut self, nodes: &[Node]) {
+    /// Takes the words of a row.
+    pub(crate) fn nodes(&mut self, nodes: &[Node]) {
         for node in nodes {
             match &node.what {
                 Clause::Op(op) => {
@@ -68,15 +68,4 @@ impl Evidence {
             }
         }
     }
-}
-
-/// Collects the evidence of a file.
-pub(crate) fn evidence(tree: &Tree) -> Evidence {
-    let mut evidence = Evidence::default();
-    for line in &tree.lines {
-        if let Content::Row(row) = &line.what {
-            evidence.nodes(&row.body);
-        }
-    }
-    evidence
 }

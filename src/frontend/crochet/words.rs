@@ -164,6 +164,8 @@ pub(crate) struct Words {
     map: Table,
     capitals: BTreeMap<&'static str, Meaning>,
     long: BTreeMap<String, Meaning>,
+    /// The file declared names, of any length.
+    declares: bool,
     pub language: Language,
 }
 
@@ -216,8 +218,13 @@ impl Table {
 
 impl Words {
     pub(crate) fn new(language: Language) -> Self {
-        let mut words =
-            Self { map: Table::new(), capitals: BTreeMap::new(), long: BTreeMap::new(), language };
+        let mut words = Self {
+            map: Table::new(),
+            capitals: BTreeMap::new(),
+            long: BTreeMap::new(),
+            declares: false,
+            language,
+        };
         for (word, spellings) in Language::English.vocabulary().words {
             let Some((_, key)) = KEYS.iter().find(|(name, _)| name == word) else { continue };
             for spelling in *spellings {
@@ -310,6 +317,7 @@ impl Words {
     /// Enters a name that the file declares.
     pub(crate) fn declare(&mut self, name: &str, meaning: Meaning) {
         self.long.insert(fold_word(name), meaning);
+        self.declares = true;
     }
 
     /// The names that the file declared so far.
@@ -319,7 +327,7 @@ impl Words {
 
     /// The meaning of a folded word.
     pub(crate) fn get(&self, word: &[u8]) -> Option<Meaning> {
-        if !self.long.is_empty() {
+        if self.declares || word.len() > size_of::<u128>() {
             let declared = std::str::from_utf8(word).ok().and_then(|word| self.long.get(word));
             if declared.is_some() {
                 return declared.copied();

@@ -309,7 +309,7 @@ impl<'t> Document<'t, '_, '_> {
                 }
                 self.cursor.only(element, &["times"])?;
                 let times = self.cursor.count_of(element, "times", 1..=MAX_LOOPS)?;
-                return Ok(Some(Op::Repeat { body: self.steps(element, depth + 1)?, times }));
+                return Ok(Some(Op::repeat(self.steps(element, depth + 1)?, times)));
             }
             "turn" => {
                 self.cursor.only(element, &["direction"])?;
