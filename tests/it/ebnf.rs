@@ -246,6 +246,7 @@ impl<'g> Sampler<'g> {
             "BACK" => self.word(["<-", "←"][random % 2]),
             "FWD" => self.word(["->", "→"][random % 2]),
             "TIMES" => self.word(["x", "×"][random % 2]),
+            "DECLARED" => self.word("white"),
             "COLOR" => self.word(["B", "D", "white"][random % 3]),
             "DEFINED" => self.word("flurb"),
             "WORD" => self.word(["Zebra", "Knopf"][random % 2]),

@@ -256,6 +256,53 @@ fn faults_on_every_line_take_linear_time() {
 }
 
 #[test]
+fn parts_and_repeated_rows_take_linear_time() {
+    let mut parts = String::new();
+    for part in 0..20_000 {
+        writeln!(parts, "Leg {part}:\nRnd 1: 6 sc in MR (6)").unwrap();
+    }
+    let begun = Instant::now();
+    assert_eq!(read(parts.as_bytes()), [""; 0]);
+    let flat = "Row 1: 6 fsc (6)\nRow 2: 6 sc (6)\nRow 3: 6 sc (6)\n";
+    assert_eq!(read(format!("{flat}Rows 4-50003: rep rows 2 and 3\n").as_bytes()), [""; 0]);
+    // Each line lists four thousand million rows.
+    let bomb = "Rows 4-4294967295: rep rows 2-3\n".repeat(2_000);
+    assert!(read(format!("{flat}{bomb}").as_bytes()).iter().any(|code| code == "E0006"));
+    assert!(begun.elapsed() < Duration::from_secs(30));
+}
+
+#[test]
+fn flat_rows_come_back_to_the_loops_that_short_ones_left() {
+    let heel = |last: &str| {
+        format!(
+            "Row 1: 12 fsc, turn (12)\nRow 2: 8 sc, leave 4 sts unworked, turn (8)\n\
+             Row 3: sc across, turn (8)\n{last}\nRow 5: sc across (12)\n"
+        )
+    };
+    assert_eq!(read(heel("Row 4: 8 sc, 4 sc, turn (12)").as_bytes()), [""; 0]);
+    assert_eq!(read(heel("Row 4: sc across, turn (12)").as_bytes()), ["W0401"]);
+    assert_eq!(
+        read(format!("convention: across-step=all\n{}", heel("Row 4: sc across, turn")).as_bytes()),
+        [""; 0]
+    );
+    assert_eq!(read(heel("Row 4: 13 sc, turn (13)").as_bytes())[0], "E0101");
+}
+
+#[test]
+fn mc_is_a_ring_or_a_color() {
+    assert_eq!(read(b"Rnd 1: MC 6 (6)\nRnd 2: inc around (12)\n"), [""; 0]);
+    assert_eq!(read(b"Rnd 1: 6 sc in MC (6)\n"), [""; 0]);
+    assert_eq!(read(b"Rnd 1: 6 sc in MR (6)\nRnd 2: MC, 6 sc (6)\n"), ["E0008"]);
+    let colors = "color MC = #ff0000\ncolor CC = #00ff00\n";
+    assert_eq!(
+        read(format!("{colors}Rnd 1: 6 sc in MR (6)\nRnd 2: CC, 3 sc, 3 sc in MC (6)\n").as_bytes()),
+        [""; 0]
+    );
+    let said = "convention: mc=color\nRnd 1: 6 sc in MR (6)\nRnd 2: MC, 6 sc (6)\nRnd 3: 6 sc in MC (6)\n";
+    assert_eq!(read(said.as_bytes()), [""; 0]);
+}
+
+#[test]
 fn a_huge_line_and_a_huge_file_are_refused() {
     let line = format!("Rnd 1: {}\n", "sc, ".repeat(2 << 20));
     assert_eq!(read(line.as_bytes()), ["E0006"]);

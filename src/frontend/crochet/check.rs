@@ -16,6 +16,9 @@ use std::collections::BTreeMap;
 /// Most loops of a file.
 pub const MAX_FILE_LOOPS: u64 = 10_000_000;
 
+/// Flat rows of one range that are followed one by one.
+const MAX_FLAT: u32 = 100_000;
+
 /// One line of rounds, as counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Round {
@@ -93,6 +96,10 @@ pub(super) struct Checker<'d> {
 pub(super) struct State {
     pub have: Option<i64>,
     pub below: Below,
+    /// Loops behind these that earlier flat rows left.
+    pub beyond: i64,
+    /// Loops that flat rows left on the side where the next row ends.
+    pub other_side: i64,
     pub chain_counted: bool,
     /// Chain spaces of the row below.
     pub spaces: Option<u32>,
@@ -184,6 +191,8 @@ impl Checker<'_> {
         let mut state = State {
             have: Some(0),
             below: Below::Nothing,
+            beyond: 0,
+            other_side: 0,
             chain_counted: false,
             spaces: None,
             dominant: Kind::Sc,
@@ -245,6 +254,7 @@ impl Checker<'_> {
             dominant: state.dominant,
             color: self.color,
             spaces: state.spaces,
+            beyond: state.beyond,
             segments: if state.rows.is_empty() { &state.segments } else { &[] },
         }
     }
@@ -258,6 +268,7 @@ impl Checker<'_> {
                 (row, again.count.as_ref().filter(|_| ends))
             }
             What::Broken(stated) => {
+                std::mem::swap(&mut state.beyond, &mut state.other_side);
                 state.have = stated.map(i64::from);
                 state.below = Below::Loops;
                 state.chain_counted = false;
@@ -291,6 +302,7 @@ impl Checker<'_> {
                     state.start.get_or_insert(Start::Chain { loops: 0, joined: !part.flat });
                 }
                 self.remember(&solved, state);
+                std::mem::swap(&mut state.beyond, &mut state.other_side);
                 state.have = leaves;
                 state.below = Below::Loops;
                 state.last_at = Some(item.at);
@@ -299,6 +311,7 @@ impl Checker<'_> {
                 let leaves = self.fault(part, index, &job, Err(&trouble), state);
                 state.rounds.push(round(&item, None, count.and_then(stated).map(|n| n.value)));
                 state.start.get_or_insert(Start::Chain { loops: 0, joined: !part.flat });
+                std::mem::swap(&mut state.beyond, &mut state.other_side);
                 state.have = leaves;
                 state.below = Below::Loops;
                 state.last_at = Some(item.at);
@@ -353,6 +366,15 @@ impl Checker<'_> {
         state.shut |= solved.lowered.shut;
         let chain_only =
             matches!(solved.lowered.begin, Some(Begin::Chain { .. })) && !makes_loops(&solved.block);
+        if part.flat {
+            let mut own = if solved.lowered.begin.is_some() { solved.have } else { state.have };
+            // Rows of a range go back and forth over the same loops.
+            for _ in 0..times.min(MAX_FLAT) {
+                let rest = own.map_or(0, |own| (own + state.beyond - solved.works).max(0));
+                (state.beyond, state.other_side) = (state.other_side, rest);
+                own = Some(leaves);
+            }
+        }
         state.have = Some(leaves);
         state.last_at = Some(item.at);
         if chain_only {

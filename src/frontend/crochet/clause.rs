@@ -107,6 +107,8 @@ fn clause(input: Tokens<'_>) -> Res<'_, Clause> {
             }
             op(input)
         }
+        // `MC, 6 sc`: a declared color by itself.
+        Some(Tok::Color(_)) => simple(Clause::Color(input.at(0))),
         Some(_) => {
             if let Ok((rest, ring)) = join(input) {
                 return Ok((rest, Clause::Join { ring }));

@@ -47,6 +47,10 @@ settings! {
     Restart = "restart" ["part" "error"];
     /// Loops may remain where `only` or `leave` says so, also before a `turn`, or anywhere.
     Unworked = "unworked" ["explicit" "turn" "any"];
+    /// After short flat rows: `across` ends with the loops of the row below, or takes those left before.
+    AcrossStep = "across-step" ["own" "all"];
+    /// `MC`: the magic ring, or the main color; auto takes it for the ring at the start of a part with a number.
+    Mc = "mc" ["auto" "ring" "color"];
     /// `4 dec evenly spaced`: spread by equal gaps, or refused.
     Evenly = "evenly" ["spread" "refuse"];
     /// A list that does not use up the row: an error, or repeated to the end. Off in English, fill in Portuguese, Spanish, French.

@@ -80,6 +80,8 @@ pub(crate) struct Place0<'p> {
     pub color: Option<u16>,
     /// Chain spaces of the row below, where they can be told.
     pub spaces: Option<u32>,
+    /// Loops behind those of the row below that earlier flat rows left.
+    pub beyond: i64,
     pub segments: &'p [(String, Segment)],
 }
 

@@ -29,6 +29,7 @@ mod phrases;
 mod place;
 mod plan;
 mod report;
+mod ring;
 mod row;
 mod solve;
 mod stitches;

@@ -190,7 +190,7 @@ pub(crate) fn separator(input: Tokens<'_>) -> Res<'_, Sep> {
         _ => return input.fail("a comma"),
     };
     // `pb., aum`: the period belongs to the abbreviation.
-    if sep == Sep::Dot && matches!(rest.key(0), Some(Key::Comma | Key::Semi)) {
+    if sep == Sep::Dot && matches!(rest.key(0), Some(Key::Comma | Key::Semi | Key::Dot)) {
         rest = rest.skip(1);
         sep = Sep::Comma;
     }

@@ -176,11 +176,13 @@ impl Job<'_> {
         if let Some(tail) = lowered.tail {
             stated_count = Some(changed(change, tail.at, tail.value));
         }
-        let have = self.loops(&lowered);
+        let have = self.loops(&lowered, conventions);
+        if self.place.beyond > 0 && lowered.site.is_some() {
+            lowered.touched.push(Setting::AcrossStep);
+        }
         if conventions.is(Setting::ImplicitRepeat, "fill") {
             implicit(&mut lowered, have);
         }
-        let bridge = conventions.is(Setting::TurnMark, "bridge");
         let mut block = std::mem::take(&mut lowered.block);
         let nothing = self.place.below == Below::Nothing && lowered.begin.is_none();
         if let (Some(site), true) = (&lowered.site, nothing) {
@@ -210,12 +212,13 @@ impl Job<'_> {
             block,
             lowered,
         };
-        solved.fault = self.judge(&mut solved, effect, conventions, bridge);
+        solved.fault = self.judge(&mut solved, effect, conventions);
         Ok(solved)
     }
 
     /// Loops that the row has before it.
-    fn loops(&self, lowered: &Lowered) -> Option<i64> {
+    fn loops(&self, lowered: &Lowered, conventions: &Conventions) -> Option<i64> {
+        let all = self.place.beyond > 0 && conventions.is(Setting::AcrossStep, "all");
         if let Some(usable) = lowered.usable {
             return Some(i64::from(usable));
         }
@@ -224,17 +227,12 @@ impl Job<'_> {
                 Some(i64::from(*chains))
             }
             (Some(Begin::Ring), _) | (None, Below::Nothing) => Some(0),
+            (None, Below::Loops) if all => self.have.map(|have| have + self.place.beyond),
             (None, Below::Loops) => self.have,
         }
     }
 
-    fn judge(
-        &self,
-        solved: &mut Solved,
-        effect: Effect,
-        conventions: &Conventions,
-        bridge: bool,
-    ) -> Option<Trouble> {
+    fn judge(&self, solved: &mut Solved, effect: Effect, conventions: &Conventions) -> Option<Trouble> {
         let begun = solved.lowered.begin.is_some();
         let only_chain = matches!(solved.lowered.begin, Some(Begin::Chain { .. }))
             && effect.works() == 0
@@ -266,8 +264,18 @@ impl Job<'_> {
             solved.block.push(Op::Leave { loops }, self.file.source.span(self.at.range()));
         }
         let used = solved.works + solved.left;
+        // Behind the loops of the row below a flat row may find others, and need not work them.
+        let found = solved.lowered.begin.is_none() && solved.lowered.usable.is_none();
+        let (least, most) = match self.have {
+            Some(own) if found && self.place.beyond > 0 => (own, own + self.place.beyond),
+            _ => (have, have),
+        };
+        if (least..=most).contains(&used) && effect.need_ahead <= most {
+            let code = if solved.lowered.usable.is_some() { Code::ChainLength } else { Code::CountDiffers };
+            return self.differs(solved, code);
+        }
         if used > have || effect.need_ahead > have {
-            return Some(self.over(solved, used, effect.need_ahead, have));
+            return Some(self.over(solved, used, effect.need_ahead, (have, most)));
         }
         if used < have && solved.lowered.spaces.is_some() {
             // What lies between the spaces is passed over.
@@ -294,21 +302,24 @@ impl Job<'_> {
                 )));
             }
         }
-        let _ = bridge;
         let foundation = solved.lowered.usable.is_some();
         let code = if foundation { Code::ChainLength } else { Code::CountDiffers };
         self.differs(solved, code)
     }
 
-    fn over(&self, solved: &Solved, used: i64, need: i64, have: i64) -> Trouble {
+    fn over(&self, solved: &Solved, used: i64, need: i64, (have, most): (i64, i64)) -> Trouble {
         let code = if solved.lowered.usable.is_some() { Code::ChainLength } else { Code::LoopsExhausted };
         if effect::has_turn(&solved.block) && used <= have {
             let message = format!("runs out of loops: the {have} below do not reach to the turn");
             return Trouble::new(Code::LoopsExhausted, self.at, message)
                 .help(format!("{need} loops are needed before the turn"));
         }
-        let message = format!("works {used} loops, {have} are there");
-        Trouble::new(code, self.at, message).help(format!("the row can work {have} loops"))
+        let further = match most - have {
+            further @ 1.. => format!(", and {further} further on"),
+            _ => String::new(),
+        };
+        let message = format!("works {used} loops, {have} are there{further}");
+        Trouble::new(code, self.at, message).help(format!("the row can work {most} loops"))
     }
 
     /// The stated count against the loops made.

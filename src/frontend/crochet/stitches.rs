@@ -289,6 +289,14 @@ impl Lower<'_> {
                     let message = "a decrease in a ring has no stitches to work together";
                     return Err(Trouble::new(Code::NoFoundation, at, message));
                 }
+                // `6 sc in MC` on loops may mean the main color.
+                let tail = At { start: at.end.saturating_sub(2).max(at.start), end: at.end };
+                let worked = self.row.below != Below::Nothing && self.out.begin.is_none();
+                if worked && self.main_color(tail, false)? {
+                    self.color(tail, false, out);
+                    self.work(stitch, times, at, out);
+                    return Ok(());
+                }
                 self.need_ring();
                 self.work(Stitch { works: 0, ..stitch }, times, at, out);
             }
@@ -422,35 +430,6 @@ impl Lower<'_> {
             site.even = Some((stitch, count));
         }
         Ok(())
-    }
-
-    /// `MR 7`, or the ring alone.
-    pub(crate) fn ring(
-        &mut self,
-        n: Option<Num>,
-        word: Option<Word>,
-        at: At,
-        out: &mut Block,
-    ) -> Result<(), Trouble> {
-        self.need_ring();
-        let Some(n) = n else { return Ok(()) };
-        let stitch = match word {
-            Some(word) => self.stitch(word, None)?.0,
-            None => Stitch { entry: self.entry.unwrap_or_default(), ..Stitch::plain(self.dominant()) },
-        };
-        let count = self.num(n);
-        if count == 0 {
-            return Err(Trouble::new(Code::MissingOperand, n.at, "0 stitches in the ring"));
-        }
-        self.work(Stitch { works: 0, ..stitch }, count, at, out);
-        Ok(())
-    }
-
-    /// Begins with a ring unless the part already did.
-    pub(crate) fn need_ring(&mut self) {
-        if self.row.below == Below::Nothing && self.out.begin.is_none() {
-            self.out.begin = Some(Begin::Ring);
-        }
     }
 
     /// Chains of the foundation that this row works into, if it has one.

@@ -229,6 +229,7 @@ fn onward(
             chain_counted: false,
             dominant: state.dominant,
             spaces: None,
+            beyond: 0,
             color: None,
             segments: &[],
         };
