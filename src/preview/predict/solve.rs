@@ -18,9 +18,9 @@ const AT_REST: f64 = 2e-5;
 /// Forces beyond which a shape counts as not at rest.
 const UNREST: f64 = 2e-4;
 /// Steps with one factored stiffness.
-const AGE: u32 = 15;
+const AGE: u32 = 5;
 /// Stiffness that every direction has at least.
-const FREE: f64 = 1e-3;
+const FREE: f64 = 0.03;
 /// Most entries of the matrix: 480 MB.
 const MAX_ENTRIES: u64 = 60_000_000;
 

@@ -5,6 +5,7 @@ use super::envelope::Envelope;
 use crate::ir::Kind;
 use crate::preview::net::{NONE, Net, Role};
 use glam::DVec3;
+use smallvec::SmallVec;
 
 /// A spring between two loops; lengths are in stitch heights.
 #[derive(Clone, Copy, Debug)]
@@ -26,17 +27,24 @@ pub(super) struct System {
     triangles: Vec<[u32; 3]>,
     /// Openings, each closed by a fan around its middle, turning left seen from outside.
     lids: Vec<Vec<u32>>,
-    /// Loops that resist bending, with their neighbors.
-    bends: Vec<(u32, std::ops::Range<u32>)>,
-    neighbors: Vec<u32>,
+    /// What resists bending: a loop, with the two beside it and those above and below.
+    bends: Vec<Bend>,
+}
+
+/// A loop with neighbors on all four sides. Several below or above count as one in their middle.
+struct Bend {
+    middle: u32,
+    beside: [u32; 2],
+    below: SmallVec<[u32; 2]>,
+    above: SmallVec<[u32; 2]>,
 }
 
 /// Stiffness of a diagonal, of a yarn's step at the end of a short row, and of the yarn that draws a hole shut.
-const DIAGONAL: f64 = 0.15;
+const DIAGONAL: f64 = 0.02;
 const STEP: f64 = 0.3;
 const DRAWN: f64 = 1.0;
-/// Bending stiffness.
-const BENDING: f64 = 0.05;
+/// Bending stiffness: stuffed work keeps its outline.
+const BENDING: f64 = 0.2;
 /// Pressure of the stuffing: less than one percent of strain.
 const PRESSURE: f64 = 0.0005;
 /// Loops left out between two stitches that still stand side by side.
@@ -49,7 +57,6 @@ impl System {
         for (piece, net) in nets.iter().enumerate() {
             system.piece(net, piece, numbers, width);
         }
-        system.bend(numbers.count);
         system
     }
 
@@ -98,6 +105,8 @@ impl System {
                 }
             }
         }
+        // Whether a loop and the one after it are held together by a stitch, not by a step of the yarn.
+        let mut joined = vec![true; count];
         for left in 0..net.loops {
             let right = net.after[left as usize];
             let (Some(a), Some(b)) = (number(left), number(right)) else { continue };
@@ -121,9 +130,11 @@ impl System {
                     self.spring(next, a, diagonal, DIAGONAL, false);
                 }
             } else {
+                joined[left as usize] = false;
                 self.spring(a, b, 1.2 * width.max(1.0), STEP, false);
             }
         }
+        self.bend(net, piece, numbers, &joined);
         self.close(net, piece, numbers);
     }
 
@@ -152,28 +163,36 @@ impl System {
     }
 
     /// Finds what resists bending: loops with neighbors on all four sides.
-    fn bend(&mut self, count: usize) {
-        let sides = || self.springs.iter().filter(|spring| spring.side);
-        let mut offsets = vec![0_u32; count + 1];
-        for end in sides().flat_map(|spring| spring.ends) {
-            offsets[end as usize + 1] += 1;
-        }
-        for k in 0..count {
-            offsets[k + 1] += offsets[k];
-        }
-        let mut next = offsets.clone();
-        let mut neighbors = vec![0_u32; offsets[count] as usize];
-        for [a, b] in sides().map(|spring| spring.ends) {
-            for (from, to) in [(a, b), (b, a)] {
-                neighbors[next[from as usize] as usize] = to;
-                next[from as usize] += 1;
+    fn bend(&mut self, net: &Net, piece: usize, numbers: &Numbers, joined: &[bool]) {
+        let count = net.loops as usize;
+        let mut below: Vec<SmallVec<[u32; 2]>> = vec![SmallVec::new(); count];
+        let mut above = below.clone();
+        for step in net.worked.iter().filter(|step| matches!(step.role, Role::Work(_))) {
+            for top in Net::top(step) {
+                for base in net.base(step) {
+                    let (Some(to), Some(from)) = (numbers.id(piece, top), numbers.id(piece, *base)) else {
+                        continue;
+                    };
+                    if let (Some(below), Some(above)) =
+                        (below.get_mut(top as usize), above.get_mut(*base as usize))
+                    {
+                        below.push(from);
+                        above.push(to);
+                    }
+                }
             }
         }
-        self.bends = (0..count)
-            .map(|k| (k as u32, offsets[k]..offsets[k + 1]))
-            .filter(|(_, range)| range.len() >= 4)
-            .collect();
-        self.neighbors = neighbors;
+        for (id, (below, above)) in below.into_iter().zip(above).enumerate() {
+            let beside = [net.before[id], net.after[id]].map(|id| numbers.id(piece, id));
+            if let ([Some(before), Some(after)], Some(middle)) = (beside, numbers.id(piece, id as u32))
+                && !below.is_empty()
+                && !above.is_empty()
+                && joined.get(net.before[id] as usize) == Some(&true)
+                && joined[id]
+            {
+                self.bends.push(Bend { middle, beside: [before, after], below, above });
+            }
+        }
     }
 
     /// The edges of all springs.
@@ -217,16 +236,21 @@ impl System {
             slope[a] -= force;
             slope[b] += force;
         }
-        for (middle, range) in &self.bends {
-            let around = &self.neighbors[range.start as usize..range.end as usize];
-            let share = 1.0 / around.len() as f64;
-            let mean: DVec3 = around.iter().map(|id| x[*id as usize]).sum::<DVec3>() * share;
-            let bend = mean - x[*middle as usize];
+        let mean = |ids: &[u32]| ids.iter().map(|id| x[*id as usize]).sum::<DVec3>() / ids.len() as f64;
+        for Bend { middle, beside, below, above } in &self.bends {
+            let around = 0.25 * (mean(beside) * 2.0 + mean(below) + mean(above));
+            let bend = around - x[*middle as usize];
             energy += 0.5 * BENDING * bend.length_squared();
             slope[*middle as usize] -= bend * BENDING;
-            let each = bend * (BENDING * share);
-            for id in around {
+            let each = bend * (0.25 * BENDING);
+            for id in beside {
                 slope[*id as usize] += each;
+            }
+            for side in [below, above] {
+                let each = each / side.len() as f64;
+                for id in side {
+                    slope[*id as usize] += each;
+                }
             }
         }
         energy - PRESSURE * self.volume(x, slope)
