@@ -6,7 +6,7 @@ use super::{Backend, Error, Format};
 use crate::diag::Sink;
 use crate::ir::Language;
 use crate::ir::verify::Verified;
-use crate::preview::{Mesh, Refused, Scene, Stitch, View, kind_color};
+use crate::preview::{Mesh, Places, Refused, Scene, Stitch, View, kind_color};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -22,6 +22,8 @@ pub struct Gltf {
     pub detail: Option<u8>,
     /// Thickness of the yarn in mm.
     pub yarn: Option<f64>,
+    /// Where the stitches are drawn.
+    pub places: Places,
 }
 
 /// Triangles beyond which the detail goes down by itself.
@@ -32,7 +34,7 @@ const MAX_BYTES: usize = 1 << 30;
 impl Backend for Gltf {
     fn emit(&self, program: &Verified<'_>, out: &mut dyn Write, sink: &mut Sink<'_>) -> Result<(), Error> {
         let refused = |what: Refused| Error::Unsupported { backend: Self::NAME, what: what.to_string() };
-        let scene = Scene::new(program, self.yarn, sink).map_err(refused)?;
+        let scene = Scene::new(program, self.yarn, self.places, sink).map_err(refused)?;
         scene.remark(sink);
         let mesh = Mesh::of(&scene, self.view, self.detail, BUDGET).map_err(refused)?;
         let (mut document, bytes) = File::new(&scene, &mesh, self.view).finish();

@@ -3,7 +3,7 @@
 use super::{Backend, Error, Format};
 use crate::diag::Sink;
 use crate::ir::verify::Verified;
-use crate::preview::{Camera, Mesh, Scene, View, picture};
+use crate::preview::{Camera, Mesh, Places, Scene, View, picture};
 use serde::{Deserialize, Deserializer, de};
 use std::io::{self, Write};
 
@@ -24,12 +24,22 @@ pub struct Png {
     pub elevation: f64,
     /// Thickness of the yarn in mm.
     pub yarn: Option<f64>,
+    /// Where the stitches are drawn.
+    pub places: Places,
 }
 
 impl Default for Png {
     fn default() -> Self {
         let Camera { azimuth, elevation } = Camera::default();
-        Self { view: View::default(), detail: None, size: [1000, 750], azimuth, elevation, yarn: None }
+        Self {
+            view: View::default(),
+            detail: None,
+            size: [1000, 750],
+            azimuth,
+            elevation,
+            yarn: None,
+            places: Places::default(),
+        }
     }
 }
 
@@ -43,7 +53,7 @@ impl Backend for Png {
             backend: Self::NAME,
             what: what.to_string(),
         };
-        let scene = Scene::new(program, self.yarn, sink).map_err(refused)?;
+        let scene = Scene::new(program, self.yarn, self.places, sink).map_err(refused)?;
         scene.remark(sink);
         let mesh = Mesh::of(&scene, self.view, self.detail, BUDGET).map_err(refused)?;
         let camera = Camera { azimuth: self.azimuth, elevation: self.elevation };

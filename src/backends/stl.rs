@@ -3,7 +3,7 @@
 use super::{Backend, Error, Format};
 use crate::diag::Sink;
 use crate::ir::verify::Verified;
-use crate::preview::{Mesh, Refused, Scene, View};
+use crate::preview::{Mesh, Places, Refused, Scene, View};
 use glam::Vec3;
 use serde::Deserialize;
 use std::io::{self, Write};
@@ -18,6 +18,8 @@ pub struct Stl {
     pub detail: Option<u8>,
     /// Thickness of the yarn in mm.
     pub yarn: Option<f64>,
+    /// Where the stitches are drawn.
+    pub places: Places,
 }
 
 /// Triangles beyond which the detail goes down by itself: 50 MB.
@@ -26,7 +28,7 @@ const BUDGET: u64 = 1_000_000;
 impl Backend for Stl {
     fn emit(&self, program: &Verified<'_>, out: &mut dyn Write, sink: &mut Sink<'_>) -> Result<(), Error> {
         let refused = |what: Refused| Error::Unsupported { backend: Self::NAME, what: what.to_string() };
-        let scene = Scene::new(program, self.yarn, sink).map_err(refused)?;
+        let scene = Scene::new(program, self.yarn, self.places, sink).map_err(refused)?;
         scene.remark(sink);
         let mesh = Mesh::of(&scene, self.view, self.detail, BUDGET).map_err(refused)?;
         let mut out = io::BufWriter::with_capacity(1 << 16, out);

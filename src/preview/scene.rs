@@ -10,6 +10,7 @@ use crate::ir::verify::Verified;
 use crate::ir::yarn::Yarn as Weight;
 use crate::ir::{Direction, Gauge, GaugeOrigin, Graph, Kind, PartId, Program};
 use glam::DVec3;
+use serde::Deserialize;
 use std::ops::Range;
 
 /// Most stitches that a scene holds.
@@ -144,6 +145,17 @@ pub enum Refused {
     Empty,
 }
 
+/// Where the stitches are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Places {
+    /// On the shape that the pattern was made from; predicted where there is none.
+    #[default]
+    Target,
+    /// Where the pattern alone takes them.
+    Predicted,
+}
+
 /// Yarn when no weight is known, in stitch widths.
 const YARN_OF_WIDTH: f64 = 0.30;
 /// Fabric thickness in yarn thicknesses.
@@ -152,7 +164,12 @@ const LAYERS: f64 = 2.6;
 impl Scene {
     /// Builds the scene of a program; `yarn` is a thickness in mm that takes the place of the gauge's own. The shape of
     /// a pattern without graphs is predicted, which the sink hears of.
-    pub fn new(program: &Verified<'_>, yarn: Option<f64>, sink: &Sink<'_>) -> Result<Self, Refused> {
+    pub fn new(
+        program: &Verified<'_>,
+        yarn: Option<f64>,
+        places: Places,
+        sink: &Sink<'_>,
+    ) -> Result<Self, Refused> {
         let stitches = program.facts().stitches(program);
         if stitches > MAX_STITCHES {
             return Err(Refused::TooLarge { stitches });
@@ -173,17 +190,18 @@ impl Scene {
         scene.yarn = yarn.unwrap_or_else(|| thickness(program.gauge, gauge[0]));
         scene.yarn = scene.yarn.clamp(0.05 * gauge[0].min(gauge[1]), 0.40 * gauge[0].min(gauge[1]));
         scene.thickness = LAYERS * scene.yarn;
-        if program.graphs.is_empty() {
+        if program.graphs.is_empty() || places == Places::Predicted {
             sink.stage("predict");
             let (places, rest) = predict::places(&nets, gauge, sink)?;
             scene.predicted = Some(rest);
             for (net, places) in nets.iter().zip(&places) {
                 scene.add(program, net, places, None)?;
             }
-        }
-        for (net, graph) in nets.iter().zip(&program.graphs) {
-            let places: Vec<DVec3> = graph.nodes.iter().map(|node| node.position).collect();
-            scene.add(program, net, &places, Some(graph))?;
+        } else {
+            for (net, graph) in nets.iter().zip(&program.graphs) {
+                let places: Vec<DVec3> = graph.nodes.iter().map(|node| node.position).collect();
+                scene.add(program, net, &places, Some(graph))?;
+            }
         }
         if scene.stitches.is_empty() { Err(Refused::Empty) } else { Ok(scene) }
     }

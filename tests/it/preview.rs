@@ -6,7 +6,7 @@ use picot::diag::{Sink, Sources};
 use picot::frontend::reader;
 use picot::ir::Program;
 use picot::ir::verify::verify;
-use picot::preview::{Mesh, Refused, Scene, View};
+use picot::preview::{Mesh, Places, Refused, Scene, View};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -29,7 +29,7 @@ fn shape(name: &str) -> Program {
 
 fn scene(program: &Program) -> Result<Scene, Refused> {
     let verified = verify(program, &mut Sink::new()).expect("workable");
-    Scene::new(&verified, None, &Sink::new())
+    Scene::new(&verified, None, Places::Target, &Sink::new())
 }
 
 fn patterns() -> Vec<std::path::PathBuf> {
@@ -99,7 +99,7 @@ fn written_patterns_have_a_scene() {
     for path in patterns() {
         let Some(program) = compile(&path, "crochet", &picot::Options::default()) else { continue };
         let Some(verified) = verify(&program, &mut Sink::new()) else { continue };
-        let scene = Scene::new(&verified, None, &Sink::new());
+        let scene = Scene::new(&verified, None, Places::Target, &Sink::new());
         let scene = scene.unwrap_or_else(|refused| panic!("{}: {refused}", path.display()));
         let rest = scene.predicted.expect("no graph");
         assert!(rest.residual.is_finite() && rest.strain.is_finite(), "{}: {rest:?}", path.display());
