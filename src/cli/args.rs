@@ -91,7 +91,7 @@ pub(crate) struct Reading {
     /// Axis of such a mesh that points up: x, y or z
     #[arg(long, value_name = "AXIS", value_parser = word(Up::WORDS))]
     pub(crate) up: Option<String>,
-    /// Knitting machine for `.k` and `.kc`: a name of `picot list machines`, or a profile file
+    /// Machine: a name of `picot list machines`, or a profile file; one of kind `hand` bounds the pattern itself
     #[arg(long, value_name = "NAME")]
     pub(crate) machine: Option<String>,
     /// Set an option of the generator or of a target (`picot list targets` shows the keys)

@@ -162,6 +162,12 @@ fn stages(
     let Some(verified) = verify(&program, sink) else {
         return Ok(());
     };
+    if let Some(hand) = &routed.hand
+        && !hand.makes(&verified, sink)
+    {
+        let message = format!("{}: `{}` cannot make this", job.input, hand.name);
+        return Err(Failure::Impossible { message, help: None });
+    }
     sink.stage("emit");
     for (index, _) in &job.outputs {
         let target = plan.targets[*index];

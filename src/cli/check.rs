@@ -12,7 +12,7 @@ use picot::diag::render::{json::object, short::short};
 use picot::diag::{Diagnostic, Severity, Sink, Source, Sources};
 use picot::frontend::Input;
 use picot::frontend::crochet::{self, Conventions, Document, PartRounds, Round};
-use picot::ir::machine::{self, Machine};
+use picot::ir::machine::{self, Hand, Machine};
 use picot::ir::{Direction, Part, Program, Row, Step, verify::verify};
 use picot::lower::machine::{Options, validate::validate};
 use serde_json::{Value, json};
@@ -125,7 +125,7 @@ fn check(
             mend(path, conventions)?;
         }
         let source = files::open(sources, path, stdin)?;
-        return Ok(Held::parts(written(&source, conventions, sink)));
+        return Ok(Held::parts(written(&source, conventions, routed.hand.as_ref(), sink)));
     }
     let source = files::open(sources, path, stdin)?;
     let input = picot::read(&source, reader, &routed.options, sources, sink);
@@ -150,7 +150,9 @@ fn check(
             Ok(Held { parts: Vec::new(), run: Some((run, name)) })
         }
         Some(Input::Program(program)) => {
-            verify(&program, sink);
+            if let (Some(verified), Some(hand)) = (verify(&program, sink), &routed.hand) {
+                hand.makes(&verified, sink);
+            }
             Ok(Held::parts(parts(&program)))
         }
         Some(Input::Shape(_)) | None => Ok(Held::default()),
@@ -169,11 +171,17 @@ fn likely(text: &[u8]) -> &'static str {
 }
 
 /// Checks a written pattern row by row; its rounds are counted as far as they can be read.
-fn written(source: &Source, conventions: &Conventions, sink: &mut Sink<'_>) -> Vec<PartRounds> {
+fn written(
+    source: &Source,
+    conventions: &Conventions,
+    hand: Option<&Hand>,
+    sink: &mut Sink<'_>,
+) -> Vec<PartRounds> {
     let Some(document) = Document::parse(source, conventions.language, sink) else { return Vec::new() };
     let checked = document.check(conventions, sink);
-    if let Some(program) = &checked.program {
-        verify(program, sink);
+    let verified = checked.program.as_ref().and_then(|program| verify(program, sink));
+    if let (Some(verified), Some(hand)) = (verified, hand) {
+        hand.makes(&verified, sink);
     }
     checked.parts
 }

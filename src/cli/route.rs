@@ -7,7 +7,7 @@ use picot::diag::{Sink, Sources, did_you_mean};
 use picot::frontend::crochet::{Conventions, Setting};
 use picot::frontend::{Unit, mesh};
 use picot::generate;
-use picot::ir::machine::{MACHINES, Machine};
+use picot::ir::machine::{Hand, MACHINES, Machine, Profile};
 
 /// The settings of a run, each with its owner.
 #[derive(Debug)]
@@ -16,14 +16,16 @@ pub(crate) struct Routed {
     pub(crate) options: picot::Options,
     /// For the targets, in the order in which they were asked for.
     pub(crate) tables: Vec<toml::Table>,
-    /// The machine that `--machine` names.
+    /// The knitting machine that `--machine` names.
     pub(crate) machine: Option<Machine>,
+    /// The hand that it names.
+    pub(crate) hand: Option<Hand>,
 }
 
 /// The machine of a name or a profile file.
-fn machine(named: &str) -> Result<(Machine, toml::Value), Failure> {
+fn machine(named: &str) -> Result<(Profile, toml::Value), Failure> {
     if let Some(machine) = Machine::named(named) {
-        return Ok((machine, toml::Value::String(named.to_owned())));
+        return Ok((Profile::VBed(Box::new(machine)), toml::Value::String(named.to_owned())));
     }
     if !std::path::Path::new(named).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
         let known = || MACHINES.iter().map(|(name, _)| *name);
@@ -37,7 +39,7 @@ fn machine(named: &str) -> Result<(Machine, toml::Value), Failure> {
     let mut sources = Sources::new(&files::load);
     let source = sources.open(named).map_err(|error| Failure::file(named, error))?;
     let mut sink = Sink::new();
-    let machine = Machine::read(&source, &mut sink);
+    let machine = Profile::read(&source, &mut sink);
     let table = source.text().ok().and_then(|text| text.parse::<toml::Table>().ok());
     if let (Some(machine), Some(table)) = (machine, table) {
         return Ok((machine, toml::Value::Table(table)));
@@ -81,9 +83,16 @@ pub(crate) fn route(reading: &Reading, targets: &[&'static Target]) -> Result<Ro
         }
     }
     let machine = reading.machine.as_deref().map(machine).transpose()?;
-    if let Some((_, value)) = &machine {
+    if let Some(machine) = &machine {
+        let value = &machine.1;
         for (target, table) in targets.iter().zip(&mut tables) {
             if target.keys().contains(&"machine") {
+                if let Profile::Hand(hand) = &machine.0 {
+                    let message =
+                        format!("`{}` crochets; {} is for knitting machines", hand.name, target.name);
+                    let help = "write the pattern: --to crochet".to_owned();
+                    return Err(Failure::Impossible { message, help: Some(help) });
+                }
                 table.insert("machine".to_owned(), value.clone());
             }
         }
@@ -98,13 +107,17 @@ pub(crate) fn route(reading: &Reading, targets: &[&'static Target]) -> Result<Ro
             Failure::usage(format!("--set {key}: out of range")).help(format!("give it a value {right}"))
         );
     }
-    let machine = machine.map(|(machine, _)| machine);
+    let (machine, hand) = match machine {
+        Some((Profile::VBed(machine), _)) => (Some(*machine), None),
+        Some((Profile::Hand(hand), _)) => (None, Some(hand)),
+        None => (None, None),
+    };
     let mesh = mesh::Reading {
         unit: named(Unit::WORDS, reading.unit.as_deref()),
         up: named(mesh::Up::WORDS, reading.up.as_deref()),
     };
     let options = picot::Options { gauge: reading.gauge, generate, conventions, mesh };
-    Ok(Routed { options, tables, machine })
+    Ok(Routed { options, tables, machine, hand })
 }
 
 fn named<T: Copy>(words: &[(&str, T)], name: Option<&str>) -> Option<T> {

@@ -273,6 +273,8 @@ fn profiles_are_documented_field_by_field() {
         assert_eq!(Machine::named(name).map(|machine| machine.name).as_deref(), Some(*name));
         keys(&text.parse().unwrap(), "", &mut used);
     }
+    let hand = format!("{}\ngauge = 1", crate::hand::HAND);
+    keys(&hand.parse().unwrap(), "", &mut used);
     used.sort();
     used.dedup();
     let mut documented: Vec<_> = FIELDS.iter().map(|field| field.key.to_owned()).collect();

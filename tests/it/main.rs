@@ -10,6 +10,7 @@ mod corpus;
 mod ebnf;
 mod examples;
 mod grammar;
+mod hand;
 mod knitout;
 mod limbs;
 mod loops;

@@ -12,13 +12,15 @@
 
 mod execute;
 mod findings;
+pub mod hand;
 pub mod passes;
 pub mod profile;
 mod state;
 mod yarn;
 
 pub use execute::{Checked, Report, Run, check, execute};
-pub use profile::{Choice, MACHINES, Machine};
+pub use hand::Hand;
+pub use profile::{Choice, MACHINES, Machine, Profile};
 pub use state::{Loop, LoopId, Made, NONE, Needles};
 
 use crate::diag::Span;

@@ -1,8 +1,10 @@
 //! Machine profiles: what a machine can do, as TOML, with every field documented in [`FIELDS`].
 
+use super::hand::Hand;
 use super::{Direction, MAX_NEEDLE};
 use crate::diag::{Code, Diagnostic, Sink, Source};
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 
 /// The built-in profiles, as name and text.
 pub static MACHINES: &[(&str, &str)] =
@@ -25,7 +27,22 @@ const fn field(key: &'static str, about: &'static str) -> Field {
 pub static FIELDS: &[Field] = &[
     field("name", "name of the machine, compared with the Machine header without regard to case"),
     field("header", "the name as the Machine header of Knitout spells it; the name itself when left out"),
-    field("kind", "\"v-bed\", a weft-knitting machine with two facing beds"),
+    field(
+        "kind",
+        "\"v-bed\", a weft-knitting machine with two facing beds; \"hand\", a hand or a machine that crochets as one, with name and the six fields below only",
+    ),
+    field(
+        "stitches",
+        "of a hand: what it makes, as US abbreviations, and inc, dec, ring (a magic ring), turn (short rows)",
+    ),
+    field("max_increases", "of a hand: most increases in a round; 0: no limit"),
+    field("max_decreases", "of a hand: most decreases in a round; 0: no limit"),
+    field("min_round", "of a hand: fewest stitches of a round"),
+    field("max_round", "of a hand: most stitches of a round; 0: no limit"),
+    field(
+        "gauge",
+        "of a hand: least and greatest width and height of a stitch, in millimeters; may be left out",
+    ),
     field("operations", "Knitout operations that it performs"),
     field("extensions", "x-* operations that its tools understand"),
     field("bed.needles", "first and last needle number of each bed"),
@@ -246,6 +263,59 @@ impl Sign {
     }
 }
 
+/// What a profile file describes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Profile {
+    /// A knitting machine.
+    VBed(Box<Machine>),
+    /// A hand, or a machine that crochets as one.
+    Hand(Hand),
+}
+
+impl Profile {
+    /// Reads a profile of either kind; faults go to the sink.
+    pub fn read(source: &Source, sink: &mut Sink<'_>) -> Option<Self> {
+        let table: toml::Table = parse(text(source, sink)?, source, sink)?;
+        if table.get("kind").and_then(toml::Value::as_str) != Some("hand") {
+            return Machine::read(source, sink).map(|machine| Self::VBed(Box::new(machine)));
+        }
+        let hand: Hand = parse(text(source, sink)?, source, sink)?;
+        match hand.fault() {
+            None => Some(Self::Hand(hand)),
+            Some(what) => broken(&what, source, sink),
+        }
+    }
+}
+
+fn text<'s>(source: &'s Source, sink: &mut Sink<'_>) -> Option<&'s str> {
+    match source.text() {
+        Ok(text) => Some(text),
+        Err(offset) => {
+            let message = "the machine profile is not UTF-8 text";
+            sink.push(Diagnostic::new(Code::BadProfile, message).at(source.span(offset..offset + 1), ""));
+            None
+        }
+    }
+}
+
+fn parse<T: DeserializeOwned>(text: &str, source: &Source, sink: &mut Sink<'_>) -> Option<T> {
+    match toml::from_str(text) {
+        Ok(value) => Some(value),
+        Err(error) => {
+            let span = error.span().map_or(crate::diag::Span::NONE, |range| source.span(range));
+            let message = error.message().lines().next().unwrap_or("not a machine profile").to_owned();
+            let help = "`picot list machines` shows every field; the built-in profiles are examples";
+            sink.push(Diagnostic::new(Code::BadProfile, message).at(span, "").help(help));
+            None
+        }
+    }
+}
+
+fn broken<T>(what: &str, source: &Source, sink: &mut Sink<'_>) -> Option<T> {
+    sink.push(Diagnostic::new(Code::BadProfile, what).at(source.span(0..0), "in this profile"));
+    None
+}
+
 impl Machine {
     /// A built-in profile by its name, in any case.
     pub fn named(name: &str) -> Option<Self> {
@@ -253,38 +323,12 @@ impl Machine {
         toml::from_str(text).ok()
     }
 
-    /// Reads a profile; faults go to the sink.
+    /// Reads the profile of a V-bed machine; faults go to the sink.
     pub fn read(source: &Source, sink: &mut Sink<'_>) -> Option<Self> {
-        let text = match source.text() {
-            Ok(text) => text,
-            Err(offset) => {
-                let message = "the machine profile is not UTF-8 text";
-                sink.push(Diagnostic::new(Code::BadProfile, message).at(source.span(offset..offset + 1), ""));
-                return None;
-            }
-        };
-        let machine: Self = match toml::from_str(text) {
-            Ok(machine) => machine,
-            Err(error) => {
-                let span = error.span().map_or(crate::diag::Span::NONE, |range| source.span(range));
-                let message = error.message().lines().next().unwrap_or("not a machine profile").to_owned();
-                sink.push(
-                    Diagnostic::new(Code::BadProfile, message)
-                        .at(span, "")
-                        .help("`picot list machines` shows every field; the built-in profiles are examples"),
-                );
-                return None;
-            }
-        };
+        let machine: Self = parse(text(source, sink)?, source, sink)?;
         match machine.fault() {
             None => Some(machine),
-            Some((key, what)) => {
-                sink.push(
-                    Diagnostic::new(Code::BadProfile, format!("`{key}` {what}"))
-                        .at(source.span(0..0), "in this profile"),
-                );
-                None
-            }
+            Some((key, what)) => broken(&format!("`{key}` {what}"), source, sink),
         }
     }
 
