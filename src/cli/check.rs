@@ -7,6 +7,7 @@ use super::progress::Watch;
 use super::report::{self, Report};
 use super::route::{Routed, route};
 use super::{Failure, Status, files, print, print_json};
+use picot::backends;
 use picot::diag::position::Positions;
 use picot::diag::render::{json::object, short::short};
 use picot::diag::{Diagnostic, Severity, Sink, Source, Sources};
@@ -19,7 +20,9 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 
 pub(crate) fn run(arguments: &Check, report: Report) -> Result<Status, Failure> {
-    let routed = route(&arguments.reading, &[])?;
+    // A program is compared with the pattern as the options of its target lower it.
+    let lowered: Vec<_> = arguments.against.iter().filter_map(|_| backends::target("knitout")).collect();
+    let routed = route(&arguments.reading, &lowered)?;
     let stdin = files::stdin_if_named(arguments.files.iter())?;
     let mut status = Status::Fine;
     let mut values = Vec::new();
@@ -143,7 +146,7 @@ fn check(
                 let reader = reader_of(shape, None)?;
                 let source = files::open(sources, shape, stdin)?;
                 if let Some(program) = picot::compile(&source, reader, &routed.options, sources, sink) {
-                    validate(&program, &code, machine, &Options::default(), sink);
+                    validate(&program, &code, machine, &lowering(routed), sink);
                 }
             }
             let name = machine.map(|machine| machine.name.clone());
@@ -157,6 +160,15 @@ fn check(
         }
         Some(Input::Shape(_)) | None => Ok(Held::default()),
     }
+}
+
+/// How the program was lowered, as far as the options say.
+fn lowering(routed: &Routed) -> Options {
+    let said = |key: &str| {
+        let value = routed.tables.first().and_then(|table| table.get(key));
+        value.and_then(toml::Value::as_bool).unwrap_or(false)
+    };
+    Options { approximate: said("approximate"), no_waste: said("no-waste") }
 }
 
 /// The reader of text that comes without a name: the marks of machine code and XML stand at its very start.

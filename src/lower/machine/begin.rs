@@ -132,6 +132,7 @@ pub(super) fn more_of(sources: &[Source], at: usize) -> usize {
 pub fn begin(pattern: &Pattern, part: &Part, options: &Options, sink: &mut Sink<'_>) -> Option<Begin> {
     let Start::Join { segments } = &part.start else { return Some(fresh(part)) };
     let mut sources: Vec<Source> = Vec::new();
+    let (mut sewn, mut places) = (0_u64, Vec::new());
     for segment in segments {
         let source = match *segment {
             Segment::Open { part, .. } => Source::Open(part),
@@ -140,12 +141,16 @@ pub fn begin(pattern: &Pattern, part: &Part, options: &Options, sink: &mut Sink<
             Segment::Surface { part: from, round, first, loops, .. } => {
                 let name = pattern.parts.get(from.0 as usize).map_or("?", |from| from.name.as_str());
                 let last = first.saturating_add(loops.saturating_sub(1));
-                let place = format!("stitches {first} to {last} of round {round} of {name}");
+                let (stitches, are, them) = match loops {
+                    1 => (format!("stitch {first}"), "is", "it"),
+                    _ => (format!("stitches {first} to {last}"), "are", "them"),
+                };
+                let place = format!("{stitches} of round {round} of {name}");
                 if !options.approximate {
                     sink.push(
                         Diagnostic::new(
                             Finding::LoopsFinished,
-                            format!("{place} are finished, and a needle cannot pick them up"),
+                            format!("{place} {are} finished, and no needle can pick {them} up"),
                         )
                         .in_round(&part.name, None)
                         .help(
@@ -155,14 +160,8 @@ pub fn begin(pattern: &Pattern, part: &Part, options: &Options, sink: &mut Sink<
                     );
                     return None;
                 }
-                sink.push(
-                    Diagnostic::new(
-                        Finding::SewOn,
-                        format!("{loops} loops are cast on, to be sewn to {place}"),
-                    )
-                    .in_round(&part.name, None)
-                    .help("leave a long tail, and sew loop to loop"),
-                );
+                sewn += u64::from(loops);
+                places.push(place);
                 Source::Chain(loops)
             }
         };
@@ -170,6 +169,12 @@ pub fn begin(pattern: &Pattern, part: &Part, options: &Options, sink: &mut Sink<
             (Some(Source::Chain(before)), Source::Chain(loops)) => *before = before.saturating_add(loops),
             (_, source) => sources.push(source),
         }
+    }
+    if sewn > 0 {
+        let loops = if sewn == 1 { "1 loop is" } else { &format!("{sewn} loops are") };
+        let message = format!("{loops} cast on, to be sewn to {}", places.join(", "));
+        let found = Diagnostic::new(Finding::SewOn, message).in_round(&part.name, None);
+        sink.push(found.help("leave a long tail, and sew loop to loop"));
     }
     match sources.as_slice() {
         [] => Some(fresh(part)),
