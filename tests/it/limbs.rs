@@ -248,7 +248,7 @@ fn loops_of_finished_fabric_are_refused_or_sewn() {
     for machine in machines() {
         let reasons = lowered(&program, &machine).unwrap_err();
         let expected =
-            "E2204 stitches 3 to 10 of round 2 of body are finished, and a needle cannot pick them up";
+            "E2204 stitches 3 to 10 of round 2 of body are finished, and no needle can pick them up";
         assert!(reasons.iter().any(|reason| reason.starts_with(expected)), "{reasons:?}");
         let options = Options { approximate: true, no_waste: true };
         let mut sink = Sink::new();
