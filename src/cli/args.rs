@@ -204,6 +204,8 @@ pub(crate) struct Measure {
 pub(crate) enum Algorithm {
     /// Our own.
     Picot,
+    /// The paper's, built from its text.
+    Paper,
     /// The baseline of the paper's tables (Çapunaman, Bingöl and Gürsoy 2017).
     Capunaman,
 }

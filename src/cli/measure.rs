@@ -32,7 +32,7 @@ pub(crate) struct Measured {
 }
 
 pub(crate) fn run(arguments: &Arguments, report: Report) -> Result<Status, Failure> {
-    if arguments.predict && arguments.algorithm != Algorithm::Picot {
+    if arguments.predict && arguments.algorithm == Algorithm::Capunaman {
         return Err(Failure::usage("only patterns by picot can be predicted").help("leave out --algorithm"));
     }
     let reader = reader_of(&arguments.input, arguments.reading.from.as_deref())?;
@@ -77,8 +77,10 @@ pub(crate) fn measure(
     sink: &mut Sink<'_>,
 ) -> Option<Measured> {
     match algorithm {
-        Algorithm::Picot => {
-            let program = picot::program(shape, options, sink)?;
+        Algorithm::Picot | Algorithm::Paper => {
+            let mut options = options.clone();
+            options.generate.paper = algorithm == Algorithm::Paper;
+            let program = picot::program(shape, &options, sink)?;
             sink.stage("verify");
             let mut findings = Sink::new();
             let verified = verify(&program, &mut findings);
@@ -133,6 +135,7 @@ fn baseline_rounds(net: &Baseline) -> u64 {
 pub(crate) fn name(algorithm: Algorithm) -> &'static str {
     match algorithm {
         Algorithm::Picot => "picot",
+        Algorithm::Paper => "paper",
         Algorithm::Capunaman => "capunaman",
     }
 }

@@ -8,6 +8,7 @@ pub mod capunaman;
 mod finish;
 mod first_row;
 mod options;
+mod paper;
 mod relax;
 mod rows;
 mod score;

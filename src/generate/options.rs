@@ -41,6 +41,9 @@ pub struct Options {
     pub tries: u32,
     /// Shaping of rotationally symmetric shapes as a designer writes it: even repeats, staggered from round to round.
     pub symmetric: bool,
+    /// The rules of the paper's own algorithm instead of ours; most other options then have no effect.
+    #[serde(skip)]
+    pub paper: bool,
 }
 
 impl Default for Options {
@@ -58,6 +61,7 @@ impl Default for Options {
             squareness: 0.25,
             tries: 4,
             symmetric: true,
+            paper: false,
         }
     }
 }
@@ -65,6 +69,9 @@ impl Default for Options {
 impl Options {
     /// The options with those of the preset taken in.
     pub(super) fn resolved(&self) -> Self {
+        if self.paper {
+            return super::paper::options(self);
+        }
         match self.preset {
             Preset::Std => self.clone(),
             Preset::Fast => Self {

@@ -165,7 +165,7 @@ impl<'s> Weaver<'s> {
     /// never gets one; so the end moves to where the fabric is most advanced.
     fn batch_length(&self) -> usize {
         let n = self.ring.len();
-        if !self.options.short_rows {
+        if !self.options.short_rows || self.options.paper {
             return n;
         }
         if self.part_batch || n < 6 || self.marks.is_empty() {
@@ -186,6 +186,11 @@ impl<'s> Weaver<'s> {
     /// the last row.
     fn place_feet(&mut self, bases: &[NodeId]) -> usize {
         let n = bases.len();
+        if self.options.paper {
+            let places = bases.iter().map(|id| (self.sheet.u[*id as usize], self.sheet.v[*id as usize]));
+            self.feet = super::paper::feet(self.surface, self.rows, self.sheet.height, places);
+            return self.feet.len();
+        }
         let mut missing = std::mem::take(&mut self.missing);
         missing.clear();
         missing.extend(bases.iter().map(|id| self.missing_at(*id)));
@@ -233,7 +238,8 @@ impl<'s> Weaver<'s> {
     fn gap(&self, before: DVec3, foot: &Foot) -> f64 {
         let d = foot.point - before;
         let along = d.dot(foot.along);
-        (if along > 0.0 { d.length() } else { along }) / self.sheet.width
+        // The paper compares vertices of one level; of two levels the distance along the course stands for it.
+        (if along > 0.0 && !self.options.paper { d.length() } else { along }) / self.sheet.width
     }
 
     /// Works one row over the bases: shaping, tops, edges and tiles. Returns the tops and the base of each.
@@ -248,7 +254,12 @@ impl<'s> Weaver<'s> {
         }
         self.below.clear();
         self.below.extend(bases.iter().map(|id| self.sheet.shaped[*id as usize]));
-        self.staircase.solve(&self.gaps, &self.below);
+        if self.options.paper {
+            let Staircase { plan, rest, .. } = &mut self.staircase;
+            super::paper::shape(&self.gaps, &self.below, plan, rest);
+        } else {
+            self.staircase.solve(&self.gaps, &self.below);
+        }
         let mut tops = Vec::with_capacity(bases.len() + 8);
         let mut top_base = Vec::with_capacity(bases.len() + 8);
         let width = self.sheet.width;

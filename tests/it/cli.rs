@@ -267,7 +267,7 @@ fn json(arguments: &[&str]) -> serde_json::Value {
 
 #[test]
 fn measure_has_every_field_of_its_schema() {
-    for algorithm in ["picot", "capunaman"] {
+    for algorithm in ["picot", "paper", "capunaman"] {
         let value = json(&["measure", BALL, "--json", "--algorithm", algorithm]);
         assert_eq!(value["schema"], "picot.measure/1");
         assert_eq!(value["algorithm"], algorithm);
