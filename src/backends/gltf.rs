@@ -97,7 +97,7 @@ fn extras(program: &Verified<'_>, scene: &Scene) -> Value {
         "stitches": program.facts().stitches(program),
         "gauge": { "width": width, "height": height, "assumed": scene.gauge_assumed },
         "positions": scene.origin(),
-        "yarn": { "thickness": scene.yarn },
+        "yarn": { "thickness": scene.yarn, "interpenetrating": true },
         "kinds": kinds(scene).into_keys().collect::<Vec<_>>(),
         "parts": parts,
     })

@@ -3,6 +3,7 @@
 pub mod crochet;
 pub mod dot;
 pub mod gltf;
+pub mod html;
 pub mod json;
 pub mod kcode;
 pub mod knitout;
@@ -112,6 +113,7 @@ pub static TARGETS: &[Target] = &[
     Target::of::<crochet::Crochet>(),
     Target::of::<dot::Dot>(),
     Target::of::<gltf::Gltf>(),
+    Target::of::<html::Html>(),
     Target::of::<json::Json>(),
     Target::of::<kcode::Kcode>(),
     Target::of::<knitout::Knitout>(),

@@ -22,4 +22,4 @@ pub use mesh::{MAX_TRIANGLES, Mesh, View};
 pub use net::Role;
 pub use scene::{DEFAULT_GAUGE, MAX_STITCHES, Piece, Places, Refused, Scene, Stitch};
 pub use shade::{MAX_SIDE, Picture, kind_color, picture};
-pub use yarn::{Bezier, Yarn};
+pub use yarn::{Bezier, Strand, Yarn};

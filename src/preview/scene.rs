@@ -487,10 +487,14 @@ impl Tiles<'_> {
 
 /// Maps points of the unit cube into a tile; work from the wrong side is seen from behind.
 fn draw(yarn: &mut Yarn, tile: &Stitch, step: &Worked, way: &mut Vec<keys::Key>, id: u32) {
-    for [x, y, z] in way.drain(..) {
-        let key = if step.against { [1.0 - x, y, 1.0 - z] } else { [x, y, z] };
-        yarn.push(tile.map(key), id);
+    if way.is_empty() {
+        return;
     }
+    if step.against {
+        way.iter_mut().for_each(|[x, _, z]| (*x, *z) = (1.0 - *x, 1.0 - *z));
+    }
+    yarn.strand(id, tile.corners, way);
+    way.drain(..).for_each(|key| yarn.push(tile.map(key), id));
 }
 
 /// The name of a role, for people.

@@ -34,6 +34,19 @@ impl Bezier {
 pub struct Yarn {
     points: Vec<DVec3>,
     stitches: Vec<u32>,
+    strands: Vec<Strand>,
+    ways: Vec<Vec<[f64; 3]>>,
+}
+
+/// A tile that the yarn goes through. The points of the yarn are those of its way, mapped between its corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strand {
+    /// Index in [`super::Scene::stitches`].
+    pub stitch: u32,
+    /// Corners, numbered as those of a [`super::Stitch`].
+    pub corners: [DVec3; 8],
+    /// Index in [`Yarn::ways`].
+    pub way: u32,
 }
 
 impl Yarn {
@@ -43,6 +56,25 @@ impl Yarn {
             self.points.push(point);
             self.stitches.push(stitch);
         }
+    }
+
+    /// Notes the tile that the points to come are mapped into, and their way through the unit cube.
+    pub(super) fn strand(&mut self, stitch: u32, corners: [DVec3; 8], way: &[[f64; 3]]) {
+        let way = self.ways.iter().position(|known| known == way).unwrap_or_else(|| {
+            self.ways.push(way.to_vec());
+            self.ways.len() - 1
+        });
+        self.strands.push(Strand { stitch, corners, way: way as u32 });
+    }
+
+    /// The tiles in the order in which the yarn goes through them.
+    pub fn strands(&self) -> &[Strand] {
+        &self.strands
+    }
+
+    /// The different ways through the unit cube: x in course direction, y up, z outward.
+    pub fn ways(&self) -> &[Vec<[f64; 3]>] {
+        &self.ways
     }
 
     /// Number of curves.

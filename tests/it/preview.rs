@@ -161,6 +161,47 @@ fn glb_and_stl_say_what_they_hold() {
     assert_eq!(ids.iter().copied().fold(0.0, f32::max) as usize, stitches - 1);
 }
 
+/// Distances in yarn thicknesses from points along the yarn to the nearest other piece of yarn, more than three
+/// thicknesses away along it. The first and last tenth are left out.
+fn gaps(scene: &Scene) -> Vec<f64> {
+    const PARTS: u32 = 6;
+    let thick = scene.yarn;
+    let mut points: Vec<(f64, glam::DVec3)> = Vec::new();
+    for curve in scene.pieces[0].yarn.curves() {
+        for k in 0..PARTS {
+            let at = curve.at(f64::from(k) / f64::from(PARTS));
+            let way = points.last().map_or(0.0, |(way, last)| way + last.distance(at));
+            points.push((way, at));
+        }
+    }
+    let cell = |at: glam::DVec3| (at / (2.0 * thick)).floor().as_i64vec3().to_array();
+    let mut cells: BTreeMap<[i64; 3], Vec<usize>> = BTreeMap::new();
+    for (index, (_, at)) in points.iter().enumerate() {
+        cells.entry(cell(*at)).or_default().push(index);
+    }
+    let gap = |&(way, at): &(f64, glam::DVec3)| {
+        let [x, y, z] = cell(at);
+        let near = (0..27).flat_map(|k| cells.get(&[x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]));
+        near.flatten()
+            .map(|other| points[*other])
+            .filter(|(other, _)| (way - other).abs() > 3.0 * thick)
+            .map(|(_, other)| other.distance(at) / thick)
+            .fold(2.0, f64::min)
+    };
+    let tenth = points.len() / 10;
+    points[tenth..points.len() - tenth].iter().map(gap).collect()
+}
+
+#[test]
+fn strands_of_yarn_hardly_pass_through_each_other() {
+    for (name, deep, half) in [("cylinder", 0.005, 0.5), ("ball", 0.06, 0.3), ("paper-d", 0.08, 0.3)] {
+        let gaps = gaps(&scene(&shape(name)).expect("a scene"));
+        let share = |below: f64| gaps.iter().filter(|gap| **gap < below).count() as f64 / gaps.len() as f64;
+        let least = gaps.iter().copied().fold(2.0, f64::min);
+        assert!(share(half) <= deep, "{name}: least {least}, {} {} {}", share(0.3), share(0.5), share(0.8));
+    }
+}
+
 #[test]
 fn too_fine_is_refused_with_the_option_that_helps() {
     let message = Refused::TooFine { triangles: 20_000_000 }.to_string();

@@ -91,6 +91,7 @@ fn every_shape_through_every_target() {
             let shown = match target.name {
                 "json" => summary(bytes),
                 "obj" => size(bytes),
+                "html" => page(bytes),
                 _ if target.binary => size(bytes),
                 _ => shortened(bytes),
             };
@@ -121,6 +122,16 @@ fn shortened(bytes: &[u8]) -> String {
     }
     let shown: String = text.lines().take(60).fold(String::new(), |shown, line| shown + line + "\n");
     format!("{shown}... {} lines, {}", text.lines().count(), size(bytes))
+}
+
+/// The words of a page: its pattern whole; script, style, charts and data by their hash.
+fn page(bytes: &[u8]) -> String {
+    let text = std::str::from_utf8(bytes).expect("a text target writes UTF-8");
+    let (_, rest) = text.split_once("<section id=\"pattern\"").expect("a pattern");
+    let (pattern, after) = rest.split_once("</section>").expect("closed");
+    let data = after.split_once("id=\"picot-data\">").and_then(|(_, rest)| rest.split_once("</script>"));
+    let data = data.map_or(after, |(data, _)| data);
+    format!("data: {}\n<section{pattern}", size(data.as_bytes()))
 }
 
 /// The parts of a program without the numbers of its graph.

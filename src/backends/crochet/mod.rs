@@ -4,6 +4,8 @@ mod header;
 mod rows;
 pub(super) mod words;
 
+pub(super) use rows::Line;
+
 use super::{Backend, Error, Format};
 use crate::diag::Sink;
 pub use crate::ir::{Language, Terms};
@@ -74,6 +76,26 @@ impl Backend for Crochet {
         }
         io::Write::flush(&mut out)?;
         Ok(())
+    }
+}
+
+impl Crochet {
+    /// The lines of a whole pattern, with the number of those that are its head.
+    pub(super) fn lines(&self, program: &Verified<'_>) -> (Vec<Line>, usize) {
+        let mut lines = Vec::new();
+        let mut text = rows::Text::collect(&mut lines);
+        // Collecting does not fail.
+        let _ = header::write(self, program, &mut text);
+        let mut head = 0;
+        for index in 0..program.pattern.parts.len() {
+            let mut part = Vec::new();
+            let _ = rows::part(self, program, index, &mut rows::Text::collect(&mut part));
+            if index == 0 {
+                head = lines.len();
+            }
+            lines.append(&mut part);
+        }
+        (lines, head)
     }
 }
 

@@ -12,25 +12,69 @@ use std::io::{self, Write};
 
 /// Lines under way: rounds as they are, prose wrapped behind `//`.
 pub(super) struct Text<'t> {
-    out: &'t mut dyn Write,
+    out: Out<'t>,
     width: usize,
     prose: bool,
+}
+
+/// Where lines go.
+enum Out<'t> {
+    Writer(&'t mut dyn Write),
+    Lines(&'t mut Vec<Line>),
+}
+
+/// A line of a pattern, for whoever lays it out in another way.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::backends) enum Line {
+    /// What the reader reads back.
+    Code(String),
+    /// A remark, not wrapped.
+    Prose(String),
+    /// Room between sections.
+    Gap,
+    /// The row of a part, with its label.
+    Round {
+        /// Index of the part.
+        part: usize,
+        /// Index of its row.
+        row: usize,
+        /// `Rnds 7-12`.
+        label: String,
+        /// It begins a part in a ring.
+        begins: bool,
+        /// `(36)`, and what ends a part.
+        end: String,
+    },
 }
 
 impl<'t> Text<'t> {
     pub(super) fn new(options: &Crochet, out: &'t mut dyn Write) -> Self {
         let width = usize::from(options.line_width).max(24);
-        Self { out, width, prose: options.style == Style::Maker }
+        Self { out: Out::Writer(out), width, prose: options.style == Style::Maker }
+    }
+
+    /// Collects lines instead of writing them.
+    pub(super) fn collect(lines: &'t mut Vec<Line>) -> Self {
+        Self { out: Out::Lines(lines), width: usize::MAX, prose: true }
     }
 
     /// A line that is read back.
     pub(super) fn line(&mut self, text: &str) -> io::Result<()> {
-        writeln!(self.out, "{text}")
+        match &mut self.out {
+            Out::Writer(out) => return writeln!(out, "{text}"),
+            Out::Lines(lines) => lines.push(Line::Code(text.to_owned())),
+        }
+        Ok(())
     }
 
     /// An empty line between sections, for people.
     pub(super) fn gap(&mut self) -> io::Result<()> {
-        if self.prose { writeln!(self.out) } else { Ok(()) }
+        match &mut self.out {
+            Out::Writer(out) if self.prose => return writeln!(out),
+            Out::Writer(_) => {}
+            Out::Lines(lines) => lines.push(Line::Gap),
+        }
+        Ok(())
     }
 
     /// A remark for people only; further lines are indented.
@@ -38,18 +82,25 @@ impl<'t> Text<'t> {
         if !self.prose {
             return Ok(());
         }
+        let out = match &mut self.out {
+            Out::Writer(out) => out,
+            Out::Lines(lines) => {
+                lines.push(Line::Prose(text.to_owned()));
+                return Ok(());
+            }
+        };
         let mut line = String::from("//");
         let mut begun = false;
         for word in text.split_whitespace() {
             if begun && line.chars().count() + 1 + word.chars().count() > self.width {
-                writeln!(self.out, "{line}")?;
+                writeln!(out, "{line}")?;
                 line = String::from("//  ");
             }
             line.push(' ');
             line.push_str(word);
             begun = true;
         }
-        writeln!(self.out, "{line}")
+        writeln!(out, "{line}")
     }
 }
 
@@ -144,9 +195,14 @@ pub(super) fn part(
                 text.line(&format!("{label}: {body} ({made}){end}"))?;
             }
         } else {
-            let body = words.row(&row.body, begins);
             let label = label(part, number, row.times, options.language);
-            text.line(&format!("{label}: {body} ({made}){end}"))?;
+            let end = format!("({made}){end}");
+            if let Out::Lines(lines) = &mut text.out {
+                lines.push(Line::Round { part: index, row: place, label, begins, end });
+            } else {
+                let body = words.row(&row.body, begins);
+                text.line(&format!("{label}: {body} {end}"))?;
+            }
         }
     }
     finish(part, facts, &words, text)

@@ -4,6 +4,7 @@ use super::Arrows;
 use crate::ir::dialect::{Forms, fill};
 use crate::ir::{Block, Direction, Entry, Kind, Language, Op, Part, Program, Step, Stitch, Terms};
 use std::fmt::Write as _;
+use std::ops::Range;
 
 /// How rows are put into words.
 #[derive(Clone, Copy, Debug)]
@@ -73,7 +74,26 @@ impl<'p> Words<'p> {
         line.text
     }
 
+    /// A row as [`Words::row`], with the place of each run of stitches in it, in order.
+    pub(crate) fn runs(&self, block: &Block, begins: bool) -> (String, Vec<Range<usize>>) {
+        let mut line = self.line(block, begins);
+        for op in block.ops() {
+            self.op(op, &mut line);
+        }
+        self.settle(&mut line);
+        (line.text, line.runs)
+    }
+
     fn op(&self, op: &Op, line: &mut Line) {
+        let (from, before) = (line.text.len(), line.runs.len());
+        self.write(op, line);
+        if let Op::Work { .. } = op {
+            line.runs.truncate(before);
+            line.runs.push(from..line.text.len());
+        }
+    }
+
+    fn write(&self, op: &Op, line: &mut Line) {
         let forms = self.forms();
         match op {
             Op::Work { stitch, times } => {
@@ -340,6 +360,8 @@ fn mixed(block: &Block) -> bool {
 #[derive(Default)]
 #[expect(clippy::struct_excessive_bools, reason = "independent facts of a line")]
 struct Line {
+    /// Places of the runs of stitches in the text.
+    runs: Vec<Range<usize>>,
     text: String,
     /// A bracket or a mark was just written, so no comma comes.
     open: bool,

@@ -1,0 +1,164 @@
+//! The pattern as a list to print and to tick off; each run of stitches tells which stitches it stands for.
+
+use crate::backends::crochet::words::Words;
+use crate::backends::crochet::{Arrows, Crochet, Line};
+use crate::backends::svg::pen::Escaped;
+use crate::ir::verify::Verified;
+use crate::ir::{Block, Language, Op, Terms};
+use std::fmt::Write as _;
+
+/// Writes the pattern: what it needs, then its rounds.
+pub(super) fn write(program: &Verified<'_>, terms: Terms, out: &mut String) {
+    let options = Crochet { terms, ..Crochet::default() };
+    let (lines, head) = options.lines(program);
+    out.push_str("<div class=\"needs\">\n");
+    for line in lines.iter().take(head) {
+        need(line, out);
+    }
+    out.push_str("</div>\n<div class=\"rounds\">\n");
+    let mut list = false;
+    for line in lines.iter().skip(head) {
+        let round = matches!(line, Line::Round { .. });
+        if round != list {
+            out.push_str(if round { "<ol class=\"list\">\n" } else { "</ol>\n" });
+            list = round;
+        }
+        match line {
+            Line::Gap => {}
+            Line::Prose(text) => {
+                let _ = writeln!(out, "<p class=\"remark\">{}</p>", Escaped(text));
+            }
+            Line::Code(text) => {
+                let _ = writeln!(out, "<p class=\"step\">{}</p>", Escaped(text));
+            }
+            Line::Round { part, row, label, begins, end } => {
+                item(program, terms, (*part, *row), label, *begins, end, out);
+            }
+        }
+    }
+    out.push_str(if list { "</ol>\n</div>\n" } else { "</div>\n" });
+}
+
+/// A line of the head: `Materials: this; that.` becomes a heading with a list.
+fn need(line: &Line, out: &mut String) {
+    let (Line::Prose(text) | Line::Code(text)) = line else { return };
+    let (title, rest) = text.split_once(": ").unwrap_or(("", text));
+    match (line, title) {
+        // The page shows the name and has its own reader.
+        (Line::Code(_), "title" | "convention") => {}
+        (Line::Code(_), "terms") => {
+            let _ = writeln!(out, "<p><b>Terms</b> {}</p>", Escaped(&rest.to_uppercase()));
+        }
+        (Line::Code(_), "gauge") => {
+            let _ = writeln!(out, "<p><b>Gauge</b> {}</p>", Escaped(rest));
+        }
+        (_, title) if title == "Materials" || title.starts_with("Abbreviations") => {
+            let _ = write!(out, "<p><b>{}</b></p><ul>", Escaped(title));
+            for item in rest.trim_end_matches('.').split("; ") {
+                let _ = write!(out, "<li>{}</li>", Escaped(item));
+            }
+            out.push_str("</ul>\n");
+        }
+        (_, "Finished size") => {
+            let _ = writeln!(out, "<p><b>Finished size</b> {}</p>", Escaped(rest));
+        }
+        _ => {
+            let _ = writeln!(out, "<p class=\"remark\">{}</p>", Escaped(text));
+        }
+    }
+}
+
+fn item(
+    program: &Verified<'_>,
+    terms: Terms,
+    (part, row): (usize, usize),
+    label: &str,
+    begins: bool,
+    end: &str,
+    out: &mut String,
+) {
+    let (Some(facts), Some(of)) = (program.facts().parts.get(part), program.pattern.parts.get(part)) else {
+        return;
+    };
+    let (Some(counts), Some(body)) = (facts.rows.get(row), of.rows.get(row)) else { return };
+    let class = if counts.short_rows > 0 { "round short" } else { "round" };
+    let _ = write!(
+        out,
+        "<li class=\"{class}\" id=\"l{part}-{row}\" data-part=\"{part}\" data-row=\"{row}\"><input type=\"checkbox\" \
+         aria-label=\"{0} done\"> <button type=\"button\" class=\"rnd\">{0}</button>: ",
+        Escaped(label)
+    );
+    let words = Words::new(program, of, terms, Language::English, Arrows::Unicode);
+    let (text, places) = words.runs(&body.body, begins);
+    let mut runs = Vec::new();
+    steps(&body.body, 0, &mut Vec::new(), &mut runs);
+    let mut written = 0;
+    for (run, place) in runs.iter().zip(places) {
+        let Some(words) = text.get(place.clone()) else { continue };
+        let skipped = words.len() - words.trim_start_matches([',', ' ', '(']).len();
+        let (from, to) = (place.start + skipped, place.end);
+        let (Some(before), Some(words)) = (text.get(written..from), text.get(from..to)) else { continue };
+        if words.is_empty() {
+            continue;
+        }
+        between(before, out);
+        let _ = write!(out, "<span class=\"run\" data-s=\"{}\" data-n=\"{}\"", run.at, run.times);
+        if !run.repeats.is_empty() {
+            let every: Vec<String> =
+                run.repeats.iter().map(|(period, times)| format!("{period},{times}")).collect();
+            let _ = write!(out, " data-r=\"{}\"", every.join(";"));
+        }
+        let _ = write!(out, ">{}</span>", Escaped(words));
+        written = to;
+    }
+    between(text.get(written..).unwrap_or_default(), out);
+    let _ = writeln!(out, " <b class=\"count\">{}</b></li>", Escaped(end));
+}
+
+/// What stands between runs; turns stand out.
+fn between(text: &str, out: &mut String) {
+    for c in text.chars() {
+        if matches!(c, '\u{2190}' | '\u{2192}') {
+            let _ = write!(out, "<span class=\"turn\">{c}</span>");
+        } else {
+            let _ = write!(out, "{}", Escaped(c.encode_utf8(&mut [0; 4])));
+        }
+    }
+}
+
+/// A run of stitches among the steps of its row.
+struct Run {
+    /// Its first step.
+    at: u64,
+    times: u32,
+    /// For each bracket around: how many steps one pass takes, and how often it is worked.
+    repeats: Vec<(u64, u32)>,
+}
+
+/// Finds the runs of a block whose first step is `at`; returns the step behind it.
+fn steps(block: &Block, mut at: u64, repeats: &mut Vec<(u64, u32)>, runs: &mut Vec<Run>) -> u64 {
+    for op in block.ops() {
+        match op {
+            Op::Work { times, .. } => {
+                runs.push(Run { at, times: *times, repeats: repeats.clone() });
+                at += u64::from(*times);
+            }
+            Op::Repeat { body, times } => {
+                let first = runs.len();
+                repeats.push((0, *times));
+                let period = steps(body, at, repeats, runs) - at;
+                repeats.pop();
+                let depth = repeats.len();
+                for run in runs.iter_mut().skip(first) {
+                    if let Some(own) = run.repeats.get_mut(depth) {
+                        own.0 = period;
+                    }
+                }
+                at += period * u64::from(*times);
+            }
+            Op::Turn(_) => at += 1,
+            Op::Hold { .. } | Op::Leave { .. } | Op::Color(_) => {}
+        }
+    }
+    at
+}
