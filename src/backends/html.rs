@@ -102,7 +102,7 @@ impl Html {
              <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; \
              style-src 'unsafe-inline'; img-src data: blob:\">\n\
              <meta name=\"generator\" content=\"picot {}\">\n<title>{name}</title>\n<style>\n{STYLE}\
-             @page {{ @top-left {{ content: \"{}\" }} }}\n</style>\n</head>\n<body class=\"{}\">\n",
+             @page {{ @top-left {{ content: \"{}\" }} }}\n@page :first {{ @top-left {{ content: none }} }}\n</style>\n</head>\n<body class=\"{}\">\n",
             env!("CARGO_PKG_VERSION"),
             StyleText(&program.name),
             self.classes()
@@ -162,7 +162,9 @@ fn materials(program: &Verified<'_>, terms: Terms, out: &mut String) {
     let (lines, head) = options.lines(program);
     let list = lines.iter().take(head).find_map(|line| match line {
         super::crochet::Line::Prose(text) => text.strip_prefix("Materials: "),
-        _ => None,
+        super::crochet::Line::Code(_) | super::crochet::Line::Gap | super::crochet::Line::Round { .. } => {
+            None
+        }
     });
     match list {
         Some(list) => {
@@ -187,10 +189,10 @@ fn materials(program: &Verified<'_>, terms: Terms, out: &mut String) {
 fn numbers(program: &Verified<'_>, out: &mut String) {
     for (part, facts) in program.pattern.parts.iter().zip(&program.facts().parts) {
         let kind = if part.flat { "Row" } else { "Round" };
-        let _ = write!(
+        let _ = writeln!(
             out,
             "<div class=\"scroll\"><table><caption>{}</caption><thead><tr><th>{kind}</th><th>Works</th><th>Makes</th>\
-             <th>Short rows</th><th>Stitches so far</th></tr></thead><tbody>\n",
+             <th>Short rows</th><th>Stitches so far</th></tr></thead><tbody>",
             Escaped(&part.name)
         );
         if part.first_number() == 2 {

@@ -491,10 +491,14 @@ fn draw(yarn: &mut Yarn, tile: &Stitch, step: &Worked, way: &mut Vec<keys::Key>,
         return;
     }
     if step.against {
-        way.iter_mut().for_each(|[x, _, z]| (*x, *z) = (1.0 - *x, 1.0 - *z));
+        for [x, _, z] in way.iter_mut() {
+            (*x, *z) = (1.0 - *x, 1.0 - *z);
+        }
     }
     yarn.strand(id, tile.corners, way);
-    way.drain(..).for_each(|key| yarn.push(tile.map(key), id));
+    for key in way.drain(..) {
+        yarn.push(tile.map(key), id);
+    }
 }
 
 /// The name of a role, for people.

@@ -3,8 +3,8 @@
 //! The curves are Picot's own. The yarn of a single crochet runs along its top as one link of a chain, the front strand
 //! on and the back strand back again, then down behind the work, through under the link of the stitch below, up the front
 //! as one leg, over behind its own link, down as the other leg, back through, and up behind to the next stitch. The
-//! points were pushed apart until, in flat fabric, no two strands of yarn 0.3 stitches thick come nearer than 0.7 of
-//! their thickness; the length, 9 stitch widths, is about that of real yarn.
+//! points were pushed apart until, in flat fabric, no two strands of yarn 0.3 stitches thick come nearer than 0.9 of
+//! their thickness. The length, 9.8 stitch widths, is near that of real yarn.
 
 use crate::ir::Kind;
 

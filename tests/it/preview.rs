@@ -174,14 +174,14 @@ fn gaps(scene: &Scene) -> Vec<f64> {
             points.push((way, at));
         }
     }
-    let cell = |at: glam::DVec3| (at / (2.0 * thick)).floor().as_i64vec3().to_array();
+    let cell = |at: glam::DVec3| (at / (2.0 * thick)).floor().to_array().map(|k| k as i64);
     let mut cells: BTreeMap<[i64; 3], Vec<usize>> = BTreeMap::new();
     for (index, (_, at)) in points.iter().enumerate() {
         cells.entry(cell(*at)).or_default().push(index);
     }
     let gap = |&(way, at): &(f64, glam::DVec3)| {
         let [x, y, z] = cell(at);
-        let near = (0..27).flat_map(|k| cells.get(&[x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]));
+        let near = (0..27).filter_map(|k| cells.get(&[x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]));
         near.flatten()
             .map(|other| points[*other])
             .filter(|(other, _)| (way - other).abs() > 3.0 * thick)

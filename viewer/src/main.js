@@ -94,7 +94,7 @@ function open(id, quiet) {
 
 /** The rounds of the scene that a line of the pattern stands for. */
 function roundsOf(part, row) {
-  return scene.rounds.filter((round) => round.row === row && scene.pieces[round.piece].part === part);
+  return scene.rounds.filter((round) => round.row === row && (row >= 0 || round.number === 1) && scene.pieces[round.piece].part === part);
 }
 
 /** The first stitches of every pass of a run: brackets repeat it. */
@@ -158,7 +158,7 @@ function lower(list, value) {
 function findText(id) {
   const round = scene.rounds[scene.round[id]];
   const part = scene.pieces[round.piece].part;
-  const item = round.row < 0 ? null : $(`l${part}-${round.row}`);
+  const item = round.row < 0 && round.number !== 1 ? null : $(`l${part}-${round.row}`);
   if (!item) return null;
   const offset = id - round.first;
   const run = [...item.querySelectorAll(".run")].find((it) =>
@@ -167,6 +167,9 @@ function findText(id) {
   return run || item;
 }
 
+/** What to call a stitch that no round counts. */
+const unnumbered = (id) => (scene.kinds[scene.kind[id]].group === "close" ? "drawn shut" : "start");
+
 function describe(id) {
   const kind = scene.kinds[scene.kind[id]];
   const round = scene.rounds[scene.round[id]];
@@ -174,7 +177,7 @@ function describe(id) {
   const part = data.parts[piece.part];
   const words = [];
   if (data.parts.length > 1) words.push(part.name);
-  words.push(round.number ? `${part.flat ? "row" : "round"} ${round.number}` : "start");
+  words.push(round.number ? `${part.flat ? "row" : "round"} ${round.number}` : unnumbered(id));
   if (scene.place[id]) words.push(`stitch ${scene.place[id]}`);
   words.push(kind.name + (kind.against && kind.group !== "turn" ? " (working back)" : ""));
   const percent = (x) => `${x > 0 ? "+" : ""}${Math.round(100 * x)} %`;
@@ -331,7 +334,7 @@ function play(on) {
 function recolor() {
   const { of, legend } = paint(scene, state.color, yarnColors);
   stage.paint(of);
-  const box = $("legend");
+  const box = $("key");
   box.replaceChildren();
   box.hidden = !legend && state.mode !== "wire";
   if (state.mode === "wire") {
@@ -378,7 +381,7 @@ function controls() {
     .map((it) => {
       const part = data.parts[scene.pieces[it.piece].part];
       const name = data.parts.length > 1 ? `${part.name}, ` : "";
-      const label = it.number ? `${part.flat ? "row" : "round"} ${it.number}` : "start";
+      const label = it.number ? `${part.flat ? "row" : "round"} ${it.number}` : unnumbered(it.first);
       return { first: it.first, end: it.first + it.size, label: name + label };
     });
   $("rows").max = String(stops.length);
@@ -450,8 +453,10 @@ function save(extension, blob) {
 function photograph() {
   const { mode, upto } = state;
   stage.light([]);
+  stage.paint(paint(scene, "plain", yarnColors).of);
   stage.show("yarn", scene.count);
   $("photo").src = stage.photo();
+  stage.paint(paint(scene, state.color, yarnColors).of);
   stage.show(mode, upto);
   stage.light(lit);
 }

@@ -15,8 +15,8 @@ const WALE = [0.12, 0.36, 0.72];
 
 /** Segments and sides of a piece of yarn, and how many of its points are left out, by the number of stitches. */
 function detail(stitches) {
-  if (stitches <= 1200) return { steps: 2, sides: 6, stride: 1 };
-  if (stitches <= 6000) return { steps: 1, sides: 5, stride: 1 };
+  if (stitches <= 1500) return { steps: 1, sides: 5, stride: 1 };
+  if (stitches <= 6000) return { steps: 1, sides: 4, stride: 1 };
   if (stitches <= 20000) return { steps: 1, sides: 4, stride: 2 };
   return { steps: 1, sides: 3, stride: 3 };
 }
@@ -40,7 +40,9 @@ export class Stage {
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio || 1, 2));
     this.world = new Scene();
-    this.radius = 0.5 * Math.hypot(...scene.box) + scene.thickness;
+    let reach = 0;
+    for (let i = 0; i < scene.at.length; i += 3) reach = Math.max(reach, Math.hypot(scene.at[i], scene.at[i + 1], scene.at[i + 2]));
+    this.radius = reach + scene.thickness;
     this.camera = new PerspectiveCamera(32, 1, this.radius / 50, this.radius * 40);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);

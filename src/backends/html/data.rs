@@ -195,7 +195,9 @@ fn strands(scene: &Scene, ways: &[Vec<usize>], text: &mut String) {
             let key = [x, y, z, a.into(), b.into(), c.into()];
             let next = table.len() as u32;
             let id = *table.entry(key).or_insert_with(|| {
-                [x, y, z].into_iter().for_each(|value| points.short(value));
+                for value in [x, y, z] {
+                    points.short(value);
+                }
                 points.0.extend([a, b, c]);
                 next
             });

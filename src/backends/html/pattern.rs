@@ -17,11 +17,17 @@ pub(super) fn write(program: &Verified<'_>, terms: Terms, out: &mut String) {
     }
     out.push_str("</div>\n<div class=\"rounds\">\n");
     let mut list = false;
-    for line in lines.iter().skip(head) {
-        let round = matches!(line, Line::Round { .. });
+    for (index, line) in lines.iter().enumerate().skip(head) {
+        let ring = ring(line).and_then(|words| Some((part_of(&lines[index..])?, words)));
+        let round = ring.is_some() || matches!(line, Line::Round { .. });
         if round != list {
             out.push_str(if round { "<ol class=\"list\">\n" } else { "</ol>\n" });
             list = round;
+        }
+        if let Some((part, (label, rest))) = ring {
+            begin(part, "-1", "round", label, out);
+            let _ = writeln!(out, "{}</li>", Escaped(rest));
+            continue;
         }
         match line {
             Line::Gap => {}
@@ -37,6 +43,32 @@ pub(super) fn write(program: &Verified<'_>, terms: Terms, out: &mut String) {
         }
     }
     out.push_str(if list { "</ol>\n</div>\n" } else { "</div>\n" });
+}
+
+/// Label and words of the round that is worked in a magic ring.
+fn ring(line: &Line) -> Option<(&str, &str)> {
+    let Line::Code(text) = line else { return None };
+    let (label, rest) = text.split_once(": ")?;
+    let number = label.split_whitespace().next_back()?;
+    (number == "1" && rest.ends_with(')')).then_some((label, rest))
+}
+
+/// The part that the next round belongs to.
+fn part_of(lines: &[Line]) -> Option<usize> {
+    lines.iter().find_map(|line| match line {
+        Line::Round { part, .. } => Some(*part),
+        Line::Code(_) | Line::Prose(_) | Line::Gap => None,
+    })
+}
+
+/// A box to tick and the label of a round.
+fn begin(part: usize, row: &str, class: &str, label: &str, out: &mut String) {
+    let _ = write!(
+        out,
+        "<li class=\"{class}\" id=\"l{part}-{row}\" data-part=\"{part}\" data-row=\"{row}\"><input type=\"checkbox\" \
+         aria-label=\"{0} done\"> <button type=\"button\" class=\"rnd\">{0}</button>: ",
+        Escaped(label)
+    );
 }
 
 /// A line of the head: `Materials: this; that.` becomes a heading with a list.
@@ -82,12 +114,7 @@ fn item(
     };
     let (Some(counts), Some(body)) = (facts.rows.get(row), of.rows.get(row)) else { return };
     let class = if counts.short_rows > 0 { "round short" } else { "round" };
-    let _ = write!(
-        out,
-        "<li class=\"{class}\" id=\"l{part}-{row}\" data-part=\"{part}\" data-row=\"{row}\"><input type=\"checkbox\" \
-         aria-label=\"{0} done\"> <button type=\"button\" class=\"rnd\">{0}</button>: ",
-        Escaped(label)
-    );
+    begin(part, &row.to_string(), class, label, out);
     let words = Words::new(program, of, terms, Language::English, Arrows::Unicode);
     let (text, places) = words.runs(&body.body, begins);
     let mut runs = Vec::new();
