@@ -299,11 +299,12 @@ fn table(
     if let Some(read) = &measured.readability {
         let _ = writeln!(
             text,
-            "reading   {:.2} words a stitch, at most {} a round, longest run {}, {:.0} % of increases stacked",
+            "reading   {:.2} words a stitch, at most {} a round, longest run {}, {:.0} % of increases stacked, shaping uneven by {:.2}",
             read.words_per_stitch,
             read.most_words,
             read.longest_run,
-            100.0 * read.stacked_increases
+            100.0 * read.stacked_increases,
+            read.uneven_shaping
         );
     }
     text.push_str(&predicted(measured));

@@ -1,6 +1,6 @@
 //! How pleasant a pattern is to work, from its folded rows and its graph.
 
-use crate::ir::{Block, Graph, NodeId, Op, Pattern};
+use crate::ir::{Block, Graph, Kind, NodeId, Op, Pattern, Step};
 use serde::Serialize;
 
 /// Numbers on the reading of a pattern.
@@ -18,6 +18,9 @@ pub struct Readability {
     pub short_rows_per_thousand: f64,
     /// Longest run of equal stitches that has to be counted, where it is not the whole round.
     pub longest_run: u32,
+    /// How unevenly increases and decreases lie in a round: standard deviation of the stitches between them as a share
+    /// of their mean, averaged over the rounds that have two or more. 0 is even.
+    pub uneven_shaping: f64,
 }
 
 impl Readability {
@@ -26,6 +29,7 @@ impl Readability {
         let mut words = 0_usize;
         let (mut rounds, mut equal, mut stitches, mut turns) = (0_u64, 0_u64, 0_u64, 0_u64);
         let (mut longest_run, mut most_words) = (0, 0);
+        let (mut uneven, mut shaped) = (0.0, 0_u64);
         for part in &pattern.parts {
             let mut before: Option<&Block> = None;
             for row in &part.rows {
@@ -39,6 +43,10 @@ impl Readability {
                 let (worked, turned) = count(&row.body);
                 stitches += worked.saturating_mul(times);
                 turns += turned.saturating_mul(times);
+                if let Some(variation) = variation(&row.body) {
+                    uneven += variation * times as f64;
+                    shaped += times;
+                }
                 if row.body.ops().len() > 1 {
                     longest_run = longest_run.max(longest(&row.body));
                 }
@@ -52,8 +60,34 @@ impl Readability {
             stacked_increases: stacked(graphs),
             short_rows_per_thousand: share(500.0 * turns as f64, stitches as f64),
             longest_run,
+            uneven_shaping: share(uneven, shaped as f64),
         }
     }
+}
+
+/// Variation of the distances between the shapings of a round, around it; `None` where it has fewer than two.
+fn variation(block: &Block) -> Option<f64> {
+    let (mut place, mut first, mut before) = (0_u64, None, 0_u64);
+    let (mut gaps, mut sum, mut squares) = (0.0, 0.0, 0.0);
+    let mut gap = |length: u64| {
+        let length = length as f64;
+        (gaps, sum, squares) = (gaps + 1.0, sum + length, squares + length * length);
+    };
+    for step in block.steps() {
+        let Step::Work(stitch) = step else { continue };
+        if stitch.works != stitch.makes && stitch.kind != Kind::Skip {
+            match first {
+                Some(_) => gap(place - before),
+                None => first = Some(place),
+            }
+            before = place;
+        }
+        place += 1;
+    }
+    let first = first.filter(|first| *first != before)?;
+    gap(first + place - before);
+    let mean: f64 = sum / gaps;
+    Some((squares / gaps - mean * mean).max(0.0).sqrt() / mean)
 }
 
 fn words_of(block: &Block) -> usize {
@@ -116,4 +150,27 @@ fn stacked(graphs: &[Graph]) -> f64 {
         }
     }
     if all == 0 { 0.0 } else { stacked as f64 / all as f64 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diag::Span;
+    use crate::ir::Stitch;
+
+    #[test]
+    fn even_repeats_vary_by_nothing() {
+        let run = |stitch, times| (Op::Work { stitch, times }, Span::NONE);
+        let block = |ops: Vec<(Op, Span)>| {
+            let mut block = Block::default();
+            ops.into_iter().for_each(|(op, span)| block.push(op, span));
+            block
+        };
+        let even = Op::repeat(block(vec![run(Stitch::SC, 5), run(Stitch::INC, 1)]), 6);
+        assert_eq!(variation(&block(vec![(even, Span::NONE)])), Some(0.0));
+        // Gaps of 1 and 3: mean 2, deviation 1.
+        let uneven = vec![run(Stitch::INC, 2), run(Stitch::SC, 2)];
+        assert_eq!(variation(&block(uneven)), Some(0.5));
+        assert_eq!(variation(&block(vec![run(Stitch::INC, 1), run(Stitch::SC, 2)])), None);
+    }
 }
