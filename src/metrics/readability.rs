@@ -163,7 +163,9 @@ mod tests {
         let run = |stitch, times| (Op::Work { stitch, times }, Span::NONE);
         let block = |ops: Vec<(Op, Span)>| {
             let mut block = Block::default();
-            ops.into_iter().for_each(|(op, span)| block.push(op, span));
+            for (op, span) in ops {
+                block.push(op, span);
+            }
             block
         };
         let even = Op::repeat(block(vec![run(Stitch::SC, 5), run(Stitch::INC, 1)]), 6);
