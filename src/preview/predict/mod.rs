@@ -1,7 +1,7 @@
 //! The shape that a pattern will really take, from the pattern alone: no surface is looked at.
 //!
 //! Loops are joined by springs of the stitch's width and height, the fabric resists bending, and stuffing presses on
-//! it. The [start] stacks the rounds as rigid rings, each tilted by what its short rows lift; from there a quasi-Newton
+//! it. The start stacks the rounds as rigid rings, each tilted by what its short rows lift; from there a quasi-Newton
 //! method with one factored matrix goes to rest.
 
 mod compare;
