@@ -84,15 +84,18 @@ export class Stage {
     }
     const shape = [];
     const ring = (k) => [Math.cos((2 * Math.PI * k) / sides), Math.sin((2 * Math.PI * k) / sides)];
-    const corner = (s, k) => shape.push(s / steps, ...ring(k));
-    for (let s = 0; s < steps; s++) {
+    const index = [];
+    for (let s = 0; s <= steps; s++) {
       for (let k = 0; k < sides; k++) {
-        corner(s, k), corner(s + 1, k), corner(s + 1, k + 1);
-        corner(s, k), corner(s + 1, k + 1), corner(s, k + 1);
+        shape.push(s / steps, ...ring(k));
+        if (s === steps) continue;
+        const [a, b] = [s * sides + k, s * sides + ((k + 1) % sides)];
+        index.push(a, a + sides, b + sides, a, b + sides, b);
       }
     }
     const geometry = new InstancedBufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(new Float32Array(shape), 3));
+    geometry.setIndex(index);
     geometry.setAttribute("aSegment", new InstancedBufferAttribute(yarn.segments, 1));
     const material = new ShaderMaterial({
       glslVersion: GLSL3,
