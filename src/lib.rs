@@ -122,6 +122,8 @@ pub fn read(
         crochet::read(source, &options.conventions, sink)
     } else if mesh::is_mesh(reader) {
         mesh::read(source, reader, options.mesh, options.gauge, sources, sink)
+    } else if reader.name == frontend::loops::READER.name {
+        frontend::loops::read_at(source, options.gauge, sink)
     } else if reader.name == frontend::shape::READER.name {
         frontend::shape::read_at(source, options.gauge, sources, sink)
     } else {

@@ -64,6 +64,8 @@ pub(crate) enum Command {
     Fmt(Fmt),
     /// Measure how close the stitches come to the shape
     Measure(Measure),
+    /// Write the surface of a shape: OBJ for modeling tools, or loops
+    Surface(Surface),
     /// Time the compiler; with --paper, set it beside the tables of the paper
     Bench(Bench),
     /// List what there is: targets, readers, passes, stitches, diagnostic codes
@@ -157,6 +159,25 @@ pub(crate) struct Fmt {
     /// Write nothing; name the files that would change, and exit with 1 if there are any
     #[arg(long)]
     pub(crate) check: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  picot surface shapes/paper/d.toml -o d.obj
+  picot surface shapes/cactus.toml --part trunk -o trunk.loops")]
+pub(crate) struct Surface {
+    /// Shape file, mesh or loops; `-` is stdin
+    #[arg(value_name = "INPUT")]
+    pub(crate) input: String,
+    /// Output file: .obj, or .loops
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: String,
+    /// The part to write as loops, where there are several
+    #[arg(long, value_name = "NAME")]
+    pub(crate) part: Option<String>,
     #[command(flatten)]
     pub(crate) reading: Reading,
 }

@@ -15,6 +15,7 @@ mod plan;
 mod progress;
 mod report;
 mod route;
+mod surface;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -110,6 +111,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Check(arguments) => check::run(arguments, report),
         Command::Fmt(arguments) => fmt::run(arguments, report),
         Command::Measure(arguments) => measure::run(arguments, report),
+        Command::Surface(arguments) => surface::run(arguments, report),
         Command::Bench(arguments) => bench::run(arguments, report),
         Command::List(arguments) => list::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),

@@ -4,6 +4,7 @@ pub mod crochet;
 mod findings;
 pub mod kcode;
 pub mod knitout;
+pub(crate) mod loops;
 pub mod mesh;
 pub(crate) mod shape;
 mod unit;
@@ -51,6 +52,7 @@ pub static READERS: &[Reader] = &[
     mesh::STL,
     mesh::PLY,
     mesh::GLTF,
+    loops::READER,
 ];
 
 /// The reader with this name.

@@ -85,19 +85,80 @@ impl<S: ParametricSurface> Branch<S> {
         if outs.len() < AROUND {
             return Err(Misfit::Beside { share: 1.0 - outs.len() as f64 / AROUND as f64 });
         }
-        let mut places: Vec<f64> = outs.iter().map(|out| out.0).collect();
+        let places: Vec<f64> = outs.iter().map(|out| out.0).collect();
         let sharp = Self { rim: with_slopes(&places), mean: mean(&places), ease: 0.0, phase: 0.0, surface };
         if let Some(at) = points(&sharp, RIM).find(|point| parent.contains(*point, TOUCH)) {
             return Err(Misfit::Returns { at });
         }
+        let feet: Vec<Foot> = outs.iter().map(|out| out.1).collect();
+        Ok(Self::along(sharp.surface, places, &feet, [girth, length], [width, give]))
+    }
+
+    /// Cuts off a branch that begins as a part of its parent's surface: it leaves where it lies farther than `reach` (mm)
+    /// from the parent. Otherwise as [`Branch::new`].
+    pub(crate) fn leaving(
+        surface: S,
+        parent: &Solid<'_>,
+        [width, give]: [f64; 2],
+        reach: f64,
+    ) -> Result<Self, Misfit> {
+        let mut places = Vec::with_capacity(AROUND);
+        let mut feet = Vec::with_capacity(AROUND);
+        let mut lost = 0;
+        let step = 1.0 / f64::from(2 * ALONG);
+        for k in 0..AROUND {
+            let v = k as f64 / AROUND as f64;
+            let mut foot = parent.foot(surface.point(0.0, v));
+            let mut near = 0.0;
+            let mut far = None;
+            for u in (0..=2 * ALONG).map(|k| f64::from(k) * step) {
+                let next = parent.refine(surface.point(u, v), foot.u, foot.v);
+                if next.distance > reach {
+                    far = Some(u);
+                    break;
+                }
+                (near, foot) = (u, next);
+            }
+            let Some(mut far) = far else {
+                lost += 1;
+                places.push(f64::NAN);
+                feet.push(foot);
+                continue;
+            };
+            for _ in 0..16 {
+                let middle = 0.5 * (near + far);
+                let next = parent.refine(surface.point(middle, v), foot.u, foot.v);
+                if next.distance > reach { far = middle } else { (near, foot) = (middle, next) }
+            }
+            places.push(near);
+            feet.push(foot);
+        }
+        // A line that runs along the parent all the way leaves it where the last of the others does.
+        let last = places.iter().copied().filter(|place| !place.is_nan()).fold(0.0, f64::max);
+        if lost * 4 > AROUND || last >= 0.9 {
+            return Err(Misfit::Inside);
+        }
+        places.iter_mut().filter(|place| place.is_nan()).for_each(|place| *place = last);
+        let girth = super::girth(&surface, mean(&places), 32);
+        let length = super::length_along(&surface, 0.0, 0.0..1.0, 8).max(1e-9);
+        Ok(Self::along(surface, places, &feet, [girth, length], [width, give]))
+    }
+
+    /// A branch whose lines begin at the given places.
+    fn along(
+        surface: S,
+        mut places: Vec<f64>,
+        feet: &[Foot],
+        [girth, length]: [f64; 2],
+        [width, give]: [f64; 2],
+    ) -> Self {
         soften(&mut places, ROUNDED * width * AROUND as f64 / girth.max(1e-9));
         level(&mut places, give * width / length);
         let mean = mean(&places);
         let highest = places.iter().copied().fold(mean, f64::max);
         // Rows nowhere come nearer to each other than a fifth of their mean distance.
         let ease = (0.8 * (1.0 - mean) / (highest - mean).max(1e-9) - 1.0).clamp(0.0, 1.0);
-        let phase = first_met(&outs.iter().map(|out| out.1).collect::<Vec<_>>());
-        Ok(Self { rim: with_slopes(&places), mean, ease, phase, ..sharp })
+        Self { rim: with_slopes(&places), mean, ease, phase: first_met(feet), surface }
     }
 
     /// The underlying u at a visible u, with its slopes by u and v.

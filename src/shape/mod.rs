@@ -3,6 +3,7 @@
 pub mod analytic;
 pub mod bezier;
 pub mod branch;
+pub mod export;
 mod fold;
 pub mod frame;
 pub mod loops;

@@ -11,7 +11,7 @@ const SHARE: f64 = 0.02;
 impl Stack {
     /// Makes the tube a surface of revolution when it is one but for less than what stitches of this width can show.
     /// True when it is.
-    pub(super) fn revolve(&mut self, width: f64) -> bool {
+    pub(crate) fn revolve(&mut self, width: f64) -> bool {
         let rows: Vec<&[DVec3]> = self.rows().collect();
         let around = rows.first().map_or(1, |row| row.len());
         // Twice the area of each row as a vector, all of them summed: the axis, against the sense of v.

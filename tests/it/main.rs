@@ -29,6 +29,7 @@ mod roundtrip;
 mod shape_files;
 mod snapshots;
 mod solids;
+mod stacks;
 mod surfaces;
 mod tidy;
 mod trace;

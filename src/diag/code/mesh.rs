@@ -37,6 +37,13 @@ MeshEmpty = "E4004", "a mesh without faces";
 /// Wrong: a scan with 50 million triangles for a toy of 3000 stitches
 /// Right: the same with 100,000 triangles; in Blender: modifier Decimate.
 MeshTooLarge = "E4005", "a mesh is too large";
+/// A file of loops has a line that is none of its format, or too few loops. `grammar/loops.ebnf` has the format.
+///
+/// Its first line is `picot-loops 1`; each loop begins with a line `loop`, and has a point on each further line.
+///
+/// Wrong: `loop 1 2 3`
+/// Right: `loop`, and on the next line `1 2 3`
+LoopsSyntax = "E4006", "a file of loops cannot be read";
 /// The faces form no surface: an edge has more than two faces, or parts touch in a single point.
 ///
 /// Inner walls and doubled faces do this, often left over from a union of two objects.
@@ -80,6 +87,13 @@ MeshHole = "E4105", "the surface has a hole";
 /// Wrong: `poles` that name nothing but the start
 /// Right: `poles` with a point on every tip, or no `poles` at all.
 MeshUnworkable = "E4106", "no rows can be laid on the mesh";
+/// Two loops of a stack cross each other, or run around the tube in opposite directions.
+///
+/// Rows are laid from loop to loop, so each loop lies behind the one before it, all the way around.
+///
+/// Wrong: a loop tilted so far that one side of it lies in front of the one before
+/// Right: loops across the tube, a little apart on the inner side of a bend, too.
+LoopsCross = "E4107", "loops cross each other";
 /// A limb has fewer than three rounds and is worked as a bulge of what it grows from.
 ///
 /// Short rows follow the bulge. With a smaller stitch it becomes a part of its own.

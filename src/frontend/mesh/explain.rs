@@ -6,6 +6,8 @@ use crate::diag::{Code, Diagnostic, Sink, Span};
 use crate::shape::mesh::{Cut, Fault, Field, Repairs};
 use glam::DVec3;
 
+const NAME_ENDS: &str = "name the ends: `start` and `poles` of a shape file with [mesh]";
+
 /// Unit and axes of a file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Units {
@@ -103,27 +105,47 @@ impl Units {
                 ),
                 "close it, in Blender: select its edge and Face > Fill; if it is an opening to work from, name it in `poles` of a shape file with [mesh]",
             ),
-            Fault::NoEnds { at: place } => new(
-                Code::MeshUnworkable,
-                format!("the mesh has no second end besides {}", at(place)),
-                "name the ends: `start` and `poles` of a shape file with [mesh]",
-            ),
-            Fault::NoSlice { at: place } => new(
-                Code::MeshUnworkable,
+            Fault::NoEnds { .. }
+            | Fault::NoSlice { .. }
+            | Fault::Fold { .. }
+            | Fault::Fork { .. }
+            | Fault::NoRows { .. } => self.unworkable(fault, raw),
+        }
+    }
+
+    /// A sound surface that no rows can be laid on.
+    fn unworkable(self, fault: &Fault, raw: bool) -> Diagnostic {
+        let at = |p: &DVec3| self.at(*p, raw);
+        let (message, help) = match fault {
+            Fault::NoSlice { at: place } => (
                 format!("the plane across the curve at {} meets no loop of the mesh around it", at(place)),
                 "lead the curve through the inside of the mesh, from end to end; or leave `curve` out",
             ),
-            Fault::Fold { at: place } => new(
-                Code::MeshUnworkable,
+            Fault::Fold { at: place } => (
                 format!("curve too tight at {}: planes across it cross within the mesh", at(place)),
                 "bend the curve more gently, or leave `curve` out: the field \"harmonic\" follows any bend",
             ),
-            Fault::NoRows { at: place } => new(
-                Code::MeshUnworkable,
+            Fault::Fork { at: place } => (
+                format!("where the limb that ends at {} begins cannot be told", at(place)),
+                "make it longer or thinner where it begins, or move it away from other limbs and openings",
+            ),
+            Fault::NoRows { at: place } => (
                 format!("no rows fit on the limb that ends at {}", at(place)),
                 "make the limb longer, or the stitch smaller",
             ),
-        }
+            Fault::NoEnds { at: place }
+            | Fault::Edge { at: place, .. }
+            | Fault::Vertex { at: place, .. }
+            | Fault::OneSided { at: place, .. }
+            | Fault::Genus { at: place, .. }
+            | Fault::Hole { at: place, .. } => {
+                (format!("the mesh has no second end besides {}", at(place)), NAME_ENDS)
+            }
+            Fault::Empty | Fault::NotFinite { .. } | Fault::OutOfRange { .. } | Fault::Components { .. } => {
+                ("the mesh has no ends".to_owned(), NAME_ENDS)
+            }
+        };
+        Diagnostic::new(Code::MeshUnworkable, message).help(help)
     }
 
     /// Says what was repaired.

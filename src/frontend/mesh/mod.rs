@@ -14,8 +14,8 @@ use super::unit::Unit;
 use super::{Input, Reader};
 use crate::diag::{Code, Diagnostic, Sink, Source, Sources, Span};
 use crate::ir::Gauge;
-use crate::shape::mesh::{Cut, Field, Mesh, Plan, Soup};
-use crate::shape::{Bezier, Joint, Shape, Tube};
+use crate::shape::mesh::{Cut, Field, Mesh, Piece, Plan, Soup};
+use crate::shape::{Attachment, Bezier, Shape, Tube};
 use glam::DVec3;
 
 /// The reader of Wavefront OBJ.
@@ -254,11 +254,10 @@ pub(super) fn shape(
 }
 
 fn tubes(cut: Cut) -> Vec<Tube> {
-    let tube = |piece: crate::shape::mesh::Piece| {
-        let ends = piece.stack.ends();
-        let tube = Tube::new(piece.name, Box::new(piece.stack), ends);
-        match piece.parent {
-            Some(parent) => tube.on(parent, Joint::Split),
+    let tube = |piece: Piece| {
+        let tube = Tube::new(piece.name, piece.surface, piece.ends);
+        match piece.attachment {
+            Some(Attachment { parent, joint }) => tube.on(parent, joint),
             None => tube,
         }
     };

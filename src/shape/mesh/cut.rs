@@ -2,12 +2,17 @@
 
 use super::ends::{Ends, Tip};
 use super::levels::Levels;
+use super::limb::{self, Root};
 use super::tree::{Limb, Tree};
 use super::way::Way;
 use super::{Fault, Field, Mesh};
 use crate::ir::Gauge;
+use crate::shape::branch::Branch;
+use crate::shape::measure::area;
 use crate::shape::ring::Ring;
+use crate::shape::solid::Solid;
 use crate::shape::stack::Stack;
+use crate::shape::{Attachment, End, Joint, ParametricSurface};
 use glam::DVec3;
 
 /// Shortest limb, in rows.
@@ -17,9 +22,23 @@ const LEAST_TRUNK: f64 = 2.5;
 /// Level lines beside a fork are this share of the field's range away from it.
 const ASIDE: f64 = 1e-7;
 /// The ring nearest to a pole lies this far from it, in row heights.
-const FIRST_RING: f64 = 0.4;
+pub(super) const FIRST_RING: f64 = 0.4;
 /// Samples to a stitch width around.
 const SAMPLES_A_STITCH: f64 = 1.5;
+
+/// Limbs that are thinner than this against a body are no continuation of it.
+const THINNER: f64 = 0.6;
+/// Shortest body against its girth.
+const LEAST_BODY: f64 = 0.15;
+/// Limbs between which a body ends lie apart by more than this share of their width, from middle to middle.
+const APART: f64 = 1.5;
+/// Tubes that are larger than this against their mesh do not run along it; and the samples by which that is seen.
+const MOST_AREA: f64 = 1.25;
+const SAMPLES: [u32; 2] = [48, 32];
+/// A limb leaves the surface that it grows from where it lies this far (stitches) from it.
+const LEAVES: f64 = 0.8;
+/// How far (stitches) the first row of a limb may lie off the rim in which it meets its parent.
+const GIVE: f64 = 1.0;
 
 /// How a mesh is cut into tubes; lengths are those of the mesh, millimeters by now.
 #[derive(Clone, Debug)]
@@ -37,18 +56,20 @@ pub struct Plan {
 }
 
 /// One tube of a mesh.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Piece {
     /// Its name.
     pub name: String,
     /// Its surface.
-    pub stack: Stack,
-    /// The piece that it grows out of, by index; it shares the last loop of that piece with its siblings.
-    pub parent: Option<usize>,
+    pub surface: Box<dyn ParametricSurface>,
+    /// How its ends are closed.
+    pub ends: [End; 2],
+    /// The piece that it grows out of, by index, and how.
+    pub attachment: Option<Attachment>,
 }
 
 /// What became of a mesh.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Cut {
     /// The tubes, each behind the one that it grows from.
     pub pieces: Vec<Piece>,
@@ -62,29 +83,103 @@ impl Mesh {
     /// Cuts the mesh into tubes.
     pub fn cut(&self, plan: &Plan) -> Result<Cut, Fault> {
         self.holes(plan)?;
+        // The true field lies best; on bad triangles it has eddies in which limbs are lost.
+        let sound = |cut: &Cut| {
+            let area = |piece: &Piece| area(&*piece.surface, SAMPLES[0], SAMPLES[1]);
+            cut.pieces.iter().map(area).sum::<f64>() < MOST_AREA * self.area()
+        };
+        let fault = match self.cut_along(plan, false) {
+            Ok(cut) if sound(&cut) => return Ok(cut),
+            Ok(cut) => Fault::Fork { at: cut.ends.last().map_or(DVec3::ZERO, |end| end.0) },
+            Err(fault) => fault,
+        };
+        self.cut_along(plan, true).ok().filter(sound).ok_or(fault)
+    }
+
+    fn cut_along(&self, plan: &Plan, strict: bool) -> Result<Cut, Fault> {
         let row = plan.gauge.height;
         let mut ends = Ends::find(self, row, plan.start, &plan.poles);
+        ends.strict = strict;
         if ends.others.is_empty() {
             return Err(Fault::NoEnds { at: self.middle(&ends.start) });
         }
+        let mut all = vec![(self.middle(&ends.start), ends.start.open)];
         let mut dropped = Vec::new();
-        let (field, tree, ways) = loop {
-            let field = self.flow(plan, &mut ends);
-            let tree = self.tree(&field, &ends).ok_or(Fault::NoEnds { at: self.middle(&ends.start) })?;
-            let ways: Vec<Way> = ends.others.iter().map(|tip| self.way(tip, &ends.start, &field)).collect();
-            match short(&tree, &ends, &ways, row) {
-                Some(leaf) if plan.poles.is_empty() && ends.others.len() > 1 => {
-                    dropped.push(self.middle(&ends.others[leaf]));
-                    ends.others.remove(leaf);
+        let mut limbs = Vec::new();
+        let mut rest: Option<Self> = None;
+        let pieces = loop {
+            let mesh = rest.as_ref().unwrap_or(self);
+            let (field, tree, ways) = loop {
+                let field = mesh.flow(plan, &mut ends);
+                let tree = mesh.tree(&field, &ends).ok_or(Fault::NoEnds { at: mesh.middle(&ends.start) })?;
+                let ways: Vec<Way> =
+                    ends.others.iter().map(|tip| mesh.way(tip, &ends.start.ring, &field)).collect();
+                match short(&tree, &ends, &ways, row) {
+                    Some(leaf) if plan.poles.is_empty() && ends.others.len() > 1 => {
+                        dropped.push(mesh.middle(&ends.others[leaf]));
+                        ends.others.remove(leaf);
+                    }
+                    _ => break (field, tree, ways),
                 }
-                _ => break (field, tree, ways),
+            };
+            let tree = merge_forks(tree, &ways, LEAST_TRUNK * row);
+            let Some(fork) = tree.limbs.iter().find(|limb| tree.is_last_fork(limb)) else {
+                all.extend(ends.others.iter().map(|tip| (mesh.middle(tip), tip.open)));
+                let mut pieces = Vec::new();
+                mesh.pieces(&tree, &field, &ends, &ways, plan, &mut pieces)?;
+                break pieces;
+            };
+            let (before, girth) = Levels { mesh, field: &field }.course(fork, &ways, false);
+            let leaves: Vec<usize> = fork.children.iter().map(|child| tree.limbs[*child].leaf).collect();
+            let mut roots = mesh.roots(&ends, &leaves, before)?;
+            // A body between limbs that are all thinner ends in its own right, and so it begins.
+            let between = |leaf: usize| ends.others.get(leaf).is_some_and(|tip| tip.between);
+            let middle = |roots: &[(usize, Root)]| {
+                roots.iter().map(|(_, root)| root.middle).sum::<DVec3>() / roots.len().max(1) as f64
+            };
+            let length = ways[fork.leaf].length(fork.low, fork.high);
+            if length > LEAST_BODY * girth
+                && !roots.iter().any(|(leaf, _)| between(*leaf))
+                && roots.iter().all(|(_, root)| root.girth < THINNER * girth)
+                && far_apart(&roots.iter().map(|(_, root)| (root.middle, root.girth)).collect::<Vec<_>>())
+                && ends.add_between(mesh, middle(&roots), false, row).is_some()
+            {
+                continue;
+            }
+            let goes_on = roots.pop().map(|(leaf, _)| leaf);
+            let found = plan.start.is_none() && !ends.start.open && !ends.start.between;
+            let on = fork.children.iter().find(|child| Some(tree.limbs[**child].leaf) == goes_on);
+            if let (true, true, Some(on)) = (found, std::ptr::eq(fork, &raw const tree.limbs[tree.root]), on)
+            {
+                let (_, body) = Levels { mesh, field: &field }.course(&tree.limbs[*on], &ways, true);
+                let (own, thin) = Levels { mesh, field: &field }.neck(fork, &ways);
+                let mut places: Vec<(DVec3, f64)> =
+                    roots.iter().map(|(_, root)| (root.middle, root.girth)).collect();
+                places.push((own, thin));
+                let first = places.iter().map(|place| place.0).sum::<DVec3>() / places.len() as f64;
+                if thin < THINNER * body
+                    && far_apart(&places)
+                    && ends.add_between(mesh, first, true, row).is_some()
+                {
+                    all[0] = (mesh.middle(&ends.start), false);
+                    continue;
+                }
+            }
+            let mut gone: Vec<usize> = Vec::new();
+            for (leaf, root) in roots {
+                let mesh = rest.as_ref().unwrap_or(self);
+                let place = leaf - gone.iter().filter(|other| **other < leaf).count();
+                let Some(tip) = ends.others.get(place) else { continue };
+                all.push((mesh.middle(tip), tip.open));
+                // Roots are those of the mesh before the first limb was cut off.
+                let root = if gone.is_empty() { root } else { mesh.root(&ends, place)? };
+                let (smaller, fewer, limb) = mesh.sever(&ends, place, root, plan)?;
+                limbs.push(limb);
+                gone.push(leaf);
+                (rest, ends) = (Some(smaller), fewer);
             }
         };
-        let tree = merge_forks(tree, &ways, LEAST_TRUNK * row);
-        let mut pieces = Vec::new();
-        self.pieces(&tree, &field, &ends, &ways, plan, &mut pieces)?;
-        let mut all = vec![(self.middle(&ends.start), ends.start.open)];
-        all.extend(ends.others.iter().map(|tip| (self.middle(tip), tip.open)));
+        let pieces = grow(pieces, limbs, plan)?;
         Ok(Cut { pieces, ends: all, dropped })
     }
 
@@ -105,7 +200,7 @@ impl Mesh {
         field
     }
 
-    fn middle(&self, tip: &Tip) -> DVec3 {
+    pub(super) fn middle(&self, tip: &Tip) -> DVec3 {
         match tip.ring.as_slice() {
             [vertex] => self.point(*vertex),
             ring => self.center(ring),
@@ -126,7 +221,7 @@ impl Mesh {
         let field_at = |v: u32| field[v as usize];
         let row = plan.gauge.height;
         let spacing = row.max(0.4 * self.mean_edge());
-        let range = tree.limbs.iter().map(|limb| limb.high).fold(0.0, f64::max);
+        let range = range(tree);
         // Depth first: the limb that goes on, then what branches off.
         let mut open = vec![(tree.root, None, "trunk".to_owned())];
         let mut letters = ('A'..='Z').chain('a'..='z');
@@ -168,7 +263,9 @@ impl Mesh {
             stack.revolve(plan.gauge.width);
             let here = pieces.len();
             let end = rings.last().cloned();
-            pieces.push(Piece { name: name.clone(), stack, parent });
+            let ends = stack.ends();
+            let attachment = parent.map(|parent| Attachment { parent, joint: Joint::Split });
+            pieces.push(Piece { name: name.clone(), surface: Box::new(stack), ends, attachment });
             // The child that is most like the end of this limb goes on under its name.
             let mut children: Vec<(usize, f64)> = limb
                 .children
@@ -203,6 +300,85 @@ impl Mesh {
     }
 }
 
+impl Levels<'_> {
+    /// Where a limb leads, and how thick it is: after it begins, or before it divides. The lines bulge toward the limbs on
+    /// both sides of a fork, so it is looked at away from there.
+    fn course(&self, limb: &Limb, ways: &[Way], lower: bool) -> (DVec3, f64) {
+        let way = &ways[limb.leaf];
+        let [low, high] = [way.down_to(limb.low), way.down_to(limb.high)];
+        let line = |length: f64| self.line(way.level_at(length), &way.vertices);
+        let width = line(0.5 * (low + high)).map_or(0.0, |ring| ring.length() / std::f64::consts::PI);
+        let length = low - high;
+        let at = |from: f64| line(if lower { low - from } else { high + from });
+        let [near, far] = [at(width.min(0.4 * length)), at((2.0 * width).min(0.9 * length))];
+        let center = |ring: &Option<Ring>| ring.as_ref().map_or(DVec3::ZERO, Ring::center);
+        let up = (center(&near) - center(&far)).normalize_or_zero();
+        (if lower { -up } else { up }, near.map_or(0.0, |ring| ring.length()))
+    }
+}
+
+impl Levels<'_> {
+    /// How thick a limb is that begins at the start, and the middle of the line at which it gets thicker.
+    fn neck(&self, limb: &Limb, ways: &[Way]) -> (DVec3, f64) {
+        const LINES: u32 = 24;
+        let way = &ways[limb.leaf];
+        let [low, high] = [way.down_to(limb.low), way.down_to(limb.high)];
+        let at = |i: u32| low + (high - low) * (0.25 + 0.75 * f64::from(i) / f64::from(LINES));
+        let rings: Vec<Ring> =
+            (0..LINES).filter_map(|i| self.line(way.level_at(at(i)), &way.vertices)).collect();
+        let thin = rings.iter().map(Ring::length).fold(f64::INFINITY, f64::min);
+        // A cap gets wider all along, and is no limb.
+        let even = rings.iter().filter(|ring| ring.length() < 1.25 * thin).count();
+        let thin = if 3 * even < rings.len() { f64::INFINITY } else { thin };
+        let last = rings.iter().rev().find(|ring| ring.length() < 1.25 * thin);
+        (last.map_or(DVec3::ZERO, Ring::center), thin)
+    }
+}
+
+/// True when there is room for a body between limbs of these middles and girths.
+fn far_apart(limbs: &[(DVec3, f64)]) -> bool {
+    limbs.iter().enumerate().all(|(i, (middle, girth))| {
+        let room = APART * girth / std::f64::consts::PI;
+        limbs.iter().enumerate().all(|(j, (other, _))| i == j || middle.distance(*other) > room)
+    })
+}
+
+/// Lets the limbs that were cut off grow from the pieces again, the last one first.
+fn grow(mut pieces: Vec<Piece>, limbs: Vec<limb::Limb>, plan: &Plan) -> Result<Vec<Piece>, Fault> {
+    let mut letters = ('A'..='Z').chain('a'..='z');
+    for (number, limb) in limbs.into_iter().rev().enumerate() {
+        let at = limb.pole.or_else(|| limb.rings.last().map(Ring::center)).unwrap_or_default();
+        let most = limb.rings.iter().map(Ring::length).fold(0.0, f64::max);
+        let around = (SAMPLES_A_STITCH * most / plan.gauge.width).clamp(48.0, 256.0) as usize;
+        let stack = Stack::new(&limb.rings, [None, limb.pole], around.next_multiple_of(16));
+        let stack = stack.ok_or(Fault::NoRows { at })?;
+        let base: Vec<DVec3> = (0..16).map(|k| stack.point(0.0, f64::from(k) / 16.0)).collect();
+        let ends = stack.ends();
+        let (parent, solid) = pieces
+            .iter()
+            .map(|piece| Solid::new(&*piece.surface, piece.ends))
+            .enumerate()
+            .map(|(index, solid)| {
+                let off: f64 = base.iter().map(|point| solid.foot(*point).distance.abs()).sum();
+                (off, index, solid)
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, index, solid)| (index, solid))
+            .ok_or(Fault::Fork { at })?;
+        let size = plan.gauge.width.max(plan.gauge.height);
+        let branch = Branch::leaving(stack, &solid, [plan.gauge.width, GIVE], LEAVES * size);
+        let branch = branch.map_err(|_| Fault::Fork { at })?;
+        let name = letters.next().map_or_else(|| format!("limb {number}"), |letter| format!("limb {letter}"));
+        pieces.push(Piece {
+            name,
+            surface: Box::new(branch),
+            ends,
+            attachment: Some(Attachment { parent, joint: Joint::Surface }),
+        });
+    }
+    Ok(pieces)
+}
+
 /// "trunk", "trunk 2", "trunk 3".
 fn continued(name: &str) -> String {
     match name.rsplit_once(' ').and_then(|(stem, number)| Some((stem, number.parse::<u32>().ok()?))) {
@@ -211,10 +387,18 @@ fn continued(name: &str) -> String {
     }
 }
 
+/// The greatest value of the field.
+fn range(tree: &Tree) -> f64 {
+    tree.limbs.iter().map(|limb| limb.high).fold(0.0, f64::max)
+}
+
 /// The end of a closed limb that is too short to be made.
 fn short(tree: &Tree, ends: &Ends, ways: &[Way], row: f64) -> Option<usize> {
     let limbs = tree.limbs.iter().enumerate();
-    let closed = limbs.filter(|(i, limb)| *i != tree.root && limb.last && !ends.others[limb.leaf].open);
+    let closed = limbs.filter(|(i, limb)| {
+        let tip = &ends.others[limb.leaf];
+        *i != tree.root && limb.last && !tip.open && !tip.between
+    });
     let length = |limb: &Limb| ways[limb.leaf].length(limb.low, limb.high);
     let shortest = closed.map(|(_, limb)| (length(limb), limb.leaf)).min_by(|a, b| a.0.total_cmp(&b.0))?;
     (shortest.0 < LEAST_ROWS * row).then_some(shortest.1)

@@ -29,11 +29,13 @@ pub(super) struct Tip {
     pub(super) girth: f64,
     /// Radius of the cap of a closed end.
     pub(super) cap: f64,
+    /// True for the end of a body between limbs, which is one however short.
+    pub(super) between: bool,
 }
 
 impl Tip {
     fn new(ring: Vec<u32>, open: bool) -> Self {
-        Self { ring, open, at: 0.0, girth: 0.0, cap: 0.0 }
+        Self { ring, open, at: 0.0, girth: 0.0, cap: 0.0, between: false }
     }
 
     /// Measures the limb: the area within reach of its end, by the reach.
@@ -58,6 +60,8 @@ pub(super) struct Ends {
     pub(super) start: Tip,
     pub(super) others: Vec<Tip>,
     pub(super) distance: Vec<f64>,
+    /// Whether fields keep to the maximum principle at the cost of distortion.
+    pub(super) strict: bool,
 }
 
 impl Ends {
@@ -105,7 +109,7 @@ impl Ends {
                 }
             }
         }
-        let mut ends = Self { start, others, distance };
+        let mut ends = Self { start, others, distance, strict: false };
         ends.place();
         let far = ends.others.iter().map(|tip| tip.at).fold(0.0, f64::max);
         ends.start.measure(mesh, NEAR * far, row);
@@ -162,6 +166,31 @@ impl Ends {
         let broad = tips.into_iter().zip(sizes).filter(|(_, size)| *size >= BROAD * most).map(|(tip, _)| tip);
         let lowest = broad.min_by(|a, b| height(a).total_cmp(&height(b)).then(a.ring.cmp(&b.ring)));
         lowest.unwrap_or(Tip::new(vec![0], false))
+    }
+}
+
+impl Ends {
+    /// Adds an end between limbs: where the surface is nearest to a point. It takes the place of the start if `first`;
+    /// else it is one more end. None when there is an end already.
+    pub(super) fn add_between(&mut self, mesh: &Mesh, point: DVec3, first: bool, row: f64) -> Option<()> {
+        let vertex = (0..mesh.points.len() as u32)
+            .min_by(|a, b| mesh.point(*a).distance(point).total_cmp(&mesh.point(*b).distance(point)))?;
+        if self.others.iter().chain([&self.start]).any(|tip| tip.ring.contains(&vertex)) {
+            return None;
+        }
+        let mut tip = Tip { between: true, ..Tip::new(vec![vertex], false) };
+        let far = self.others.iter().map(|tip| tip.at).fold(0.0, f64::max);
+        tip.measure(mesh, NEAR * far, row);
+        // The limbs beside it shall not lie in its cap.
+        tip.cap = CAP * row;
+        if first {
+            self.others.push(std::mem::replace(&mut self.start, tip));
+            self.distance = mesh.distances(&self.start.ring, f64::INFINITY);
+        } else {
+            self.others.push(tip);
+        }
+        self.place();
+        Some(())
     }
 }
 

@@ -96,6 +96,11 @@ pub enum Fault {
         /// The point of the curve.
         at: DVec3,
     },
+    /// A limb cannot be told from what it grows from.
+    Fork {
+        /// Its end.
+        at: DVec3,
+    },
     /// No rows fit on a limb.
     NoRows {
         /// Its end.

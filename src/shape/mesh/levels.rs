@@ -7,6 +7,8 @@ use glam::DVec3;
 
 /// Most level lines of one limb.
 const MOST_LEVELS: usize = 8192;
+/// Most levels at which there may be no line.
+const MOST_MISSED: u32 = 64;
 /// Samples by which level lines are compared.
 const SAMPLES: usize = 64;
 
@@ -82,7 +84,8 @@ impl Levels<'_> {
             samples = Some(ring.samples(SAMPLES, 0.0));
             rings.push(ring);
         }
-        while at < high && rings.len() < MOST_LEVELS {
+        let mut missed = 0;
+        while at < high && rings.len() < MOST_LEVELS && missed < MOST_MISSED {
             let mut next = at + step;
             if next + 0.4 * step >= high {
                 next = high;
@@ -94,13 +97,15 @@ impl Levels<'_> {
             };
             let Some(ring) = ring else {
                 at = next;
+                missed += 1;
                 continue;
             };
             let placed =
                 samples.as_ref().map_or_else(|| ring.samples(SAMPLES, 0.0), |before| ring.beside(before));
             let (mean, most) = samples.as_ref().map_or((spacing, spacing), |before| gap(before, &placed));
             let far = (mean / spacing).max(most / (2.5 * spacing));
-            if far > 1.35 && next - at > least {
+            // The last step may be 1.4 of the least, for a shorter one would leave too little behind it.
+            if far > 1.35 && next - at > 1.5 * least {
                 step = ((next - at) * (0.9 / far).clamp(0.2, 0.8)).max(least);
                 continue;
             }

@@ -79,7 +79,12 @@ impl Mesh {
             Stack::new(&rings, poles, around.next_multiple_of(16)).ok_or(Fault::NoRows { at: last })?;
         stack.revolve(plan.gauge.width);
         Ok(Cut {
-            pieces: vec![Piece { name: "trunk".to_owned(), stack, parent: None }],
+            pieces: vec![Piece {
+                name: "trunk".to_owned(),
+                ends: stack.ends(),
+                surface: Box::new(stack),
+                attachment: None,
+            }],
             ends,
             dropped: Vec::new(),
         })

@@ -26,6 +26,13 @@ pub(super) struct Tree {
     pub(super) root: usize,
 }
 
+impl Tree {
+    /// True for a limb that divides into limbs that do not.
+    pub(super) fn is_last_fork(&self, limb: &Limb) -> bool {
+        !limb.children.is_empty() && limb.children.iter().all(|child| self.limbs[*child].last)
+    }
+}
+
 impl Mesh {
     /// The limbs of the object under a field: components of what lies above a level, as the level falls.
     pub(super) fn tree(&self, field: &[f64], ends: &Ends) -> Option<Tree> {

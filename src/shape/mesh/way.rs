@@ -14,19 +14,28 @@ pub(super) struct Way {
 }
 
 impl Way {
+    /// Length from the end down to a level.
+    pub(super) fn down_to(&self, level: f64) -> f64 {
+        let i =
+            self.values.partition_point(|value| *value >= level).min(self.lengths.len().saturating_sub(1));
+        let Some(before) = i.checked_sub(1) else { return 0.0 };
+        let (a, b) = (self.values[before], self.values[i]);
+        let t = if a > b { ((a - level) / (a - b)).clamp(0.0, 1.0) } else { 0.0 };
+        self.lengths[before] + t * (self.lengths[i] - self.lengths[before])
+    }
+
+    /// The level at a length down from the end.
+    pub(super) fn level_at(&self, length: f64) -> f64 {
+        let i = self.lengths.partition_point(|at| *at < length).clamp(1, self.lengths.len().max(2) - 1);
+        let (Some(&a), Some(&b)) = (self.values.get(i - 1), self.values.get(i)) else { return 0.0 };
+        let span = self.lengths[i] - self.lengths[i - 1];
+        let t = if span > 0.0 { ((length - self.lengths[i - 1]) / span).clamp(0.0, 1.0) } else { 0.0 };
+        a + t * (b - a)
+    }
+
     /// Length between two levels.
     pub(super) fn length(&self, low: f64, high: f64) -> f64 {
-        let at = |level: f64| {
-            let i = self
-                .values
-                .partition_point(|value| *value >= level)
-                .min(self.lengths.len().saturating_sub(1));
-            let Some(before) = i.checked_sub(1) else { return 0.0 };
-            let (a, b) = (self.values[before], self.values[i]);
-            let t = if a > b { ((a - level) / (a - b)).clamp(0.0, 1.0) } else { 0.0 };
-            self.lengths[before] + t * (self.lengths[i] - self.lengths[before])
-        };
-        (at(low) - at(high)).max(0.0)
+        (self.down_to(low) - self.down_to(high)).max(0.0)
     }
 
     /// The level at a distance from the end, or from the start.
@@ -45,8 +54,8 @@ impl Way {
 
 impl Mesh {
     /// The way from an end to the start.
-    pub(super) fn way(&self, tip: &Tip, start: &Tip, field: &[f64]) -> Way {
-        let vertices = self.descent(tip.ring[0], field, &start.ring);
+    pub(super) fn way(&self, tip: &Tip, start: &[u32], field: &[f64]) -> Way {
+        let vertices = self.descent(tip.ring[0], field, start);
         let mut lengths = Vec::with_capacity(vertices.len());
         let mut length = 0.0;
         for (i, &vertex) in vertices.iter().enumerate() {

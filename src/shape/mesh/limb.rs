@@ -1,0 +1,331 @@
+//! Cutting a limb off: where it leaves the object, its level lines, and the object with the place closed smoothly.
+
+use super::cut::Plan;
+use super::ends::{Ends, Tip};
+use super::levels::Levels;
+use super::patch::Patch;
+use super::soup::{NONE, Soup, find};
+use super::way::Way;
+use super::{Fault, Mesh};
+use crate::math::atan2;
+use crate::shape::ring::Ring;
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// Level lines that are measured to find where a limb begins.
+const LINES: usize = 64;
+/// Lines that grow by more than this with the way down are no longer around the limb; a disk in a plane has 2 pi.
+const GROWTH: f64 = 1.6;
+/// Length of the line along which a limb is cut off, against its girth.
+const WIDER: f64 = 1.65;
+/// A patch looks at its surroundings as far as this share of the girth.
+const MARGIN: f64 = 0.15;
+/// Tries at a narrower cut.
+const TRIES: u32 = 4;
+/// Most rings of triangles in a patch.
+const MOST_RINGS: usize = 48;
+
+/// A limb that was cut off.
+#[derive(Clone, Debug)]
+pub(super) struct Limb {
+    /// Its level lines, from the object that it was cut off to its end.
+    pub(super) rings: Vec<Ring>,
+    /// Its tip, when it is closed.
+    pub(super) pole: Option<DVec3>,
+}
+
+/// Where a limb begins, and the field that tells.
+pub(super) struct Root {
+    field: Vec<f64>,
+    way: Way,
+    /// The level along which it is cut off, and the one at which it begins.
+    levels: [f64; 2],
+    /// The middle of the line at which it begins.
+    pub(super) middle: DVec3,
+    /// The length of that line.
+    pub(super) girth: f64,
+    /// Where it leads from there.
+    direction: DVec3,
+}
+
+impl Mesh {
+    /// The limbs at a fork by the ends that they go to, those that turn most against the direction before first.
+    pub(super) fn roots(
+        &self,
+        ends: &Ends,
+        leaves: &[usize],
+        before: DVec3,
+    ) -> Result<Vec<(usize, Root)>, Fault> {
+        let mut roots = Vec::with_capacity(leaves.len());
+        for &leaf in leaves {
+            let root = self.root(ends, leaf)?;
+            let turn = atan2(before.cross(root.direction).length(), before.dot(root.direction));
+            // A body goes on to its own end, if it has one.
+            let turn = if ends.others[leaf].between { -1.0 } else { turn };
+            roots.push((turn, leaf, root));
+        }
+        roots.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+        Ok(roots.into_iter().map(|(_, leaf, root)| (leaf, root)).collect())
+    }
+
+    /// Finds where the limb begins that goes to one of the ends: downward from its tip its level lines keep their length,
+    /// and then they spread out over what it grows from.
+    pub(super) fn root(&self, ends: &Ends, which: usize) -> Result<Root, Fault> {
+        let tip = &ends.others[which];
+        let (field, ground) = self.lone(ends, which);
+        let way = self.way(tip, &ground, &field);
+        let saddle = self.saddle(&field, ends, which);
+        let lines = Levels { mesh: self, field: &field };
+        let total = way.down_to(saddle);
+        let step = total / LINES as f64;
+        // From the saddle up.
+        let at = |i: usize| way.level_at(total - step * (i as f64 + 0.5));
+        let rings: Vec<Option<Ring>> = (0..LINES).map(|i| lines.line(at(i), &way.vertices)).collect();
+        let ring = |i: usize| rings.get(i).and_then(Option::as_ref);
+        let length = |i: usize| ring(i).map_or(0.0, Ring::length);
+        let growth = |i: usize| {
+            let window = ((0.1 * length(i) / step) as usize).clamp(1, 8).min(i).max(1);
+            if i < window || i + window >= LINES {
+                return f64::INFINITY;
+            }
+            (length(i - window) - length(i + window)) / (2.0 * window as f64 * step)
+        };
+        let begin = (0..LINES * 7 / 8).find(|i| growth(*i) < GROWTH);
+        // A limb without a neck begins a third up.
+        let begin = begin.unwrap_or(LINES / 3);
+        let girth = length(begin);
+        let low = (0..=begin).rev().find(|i| length(*i) >= WIDER * girth).unwrap_or(0);
+        let up = ((girth / std::f64::consts::PI / step) as usize).clamp(1, LINES);
+        let center = |i: usize| ring(i.min(LINES - 1)).map(Ring::center);
+        let fault = Fault::Fork { at: self.middle(tip) };
+        let Some(middle) = center(begin).filter(|_| girth > 0.0) else { return Err(fault) };
+        let end = center(begin + up).unwrap_or_else(|| self.middle(tip));
+        let direction = (end - middle).normalize_or_zero();
+        let levels = [at(low), at(begin)];
+        Ok(Root { field, way, levels, middle, girth, direction })
+    }
+
+    /// Cuts off the limb that goes to one of the ends. Returns the object without it, its ends, and the limb.
+    pub(super) fn sever(
+        &self,
+        ends: &Ends,
+        which: usize,
+        root: Root,
+        plan: &Plan,
+    ) -> Result<(Self, Ends, Limb), Fault> {
+        let row = plan.gauge.height;
+        let tip = &ends.others[which];
+        let fault = || Fault::Fork { at: self.middle(tip) };
+        let Root { field, way, levels: [wide, narrow], middle, girth, .. } = root;
+        let levels = Levels { mesh: self, field: &field };
+        let spacing = row.max(0.4 * self.mean_edge());
+        let (last, pole, high) = if tip.open {
+            let high = tip.ring.iter().map(|v| field[*v as usize]).fold(f64::MAX, f64::min);
+            (self.opening(&tip.ring, true), None, high)
+        } else {
+            let high = way.level(&|v| field[v as usize], super::cut::FIRST_RING * row, true);
+            (None, Some(self.middle(tip)), high)
+        };
+        // The place is cut out as widely as its surroundings allow.
+        let tries = (0..=TRIES).map(|k| wide + (narrow - wide) * f64::from(k) / f64::from(TRIES));
+        let cut = tries.filter(|level| *level < high).find_map(|level| {
+            let (kept, edge) = self.rest(self.reached(&field, level, tip), ends, which)?;
+            Some((level, kept, edge))
+        });
+        let (level, kept, edge) = cut.ok_or_else(fault)?;
+        let rings = levels.stack([level, high], &way.vertices, spacing, None, last.as_ref());
+        let (mesh, place) = self.closed(&kept, &edge, middle, girth);
+        let new = |tip: &Tip| {
+            let ring = tip.ring.iter().map(|v| place[*v as usize]).filter(|v| *v != NONE).collect();
+            Tip { ring, ..tip.clone() }
+        };
+        let start = new(&ends.start);
+        let others: Vec<Tip> =
+            ends.others.iter().enumerate().filter(|(i, _)| *i != which).map(|(_, tip)| new(tip)).collect();
+        if others.iter().chain([&start]).any(|tip| tip.ring.is_empty()) {
+            return Err(fault());
+        }
+        let distance = mesh.distances(&start.ring, f64::INFINITY);
+        Ok((mesh, Ends { start, others, distance, strict: ends.strict }, Limb { rings, pole }))
+    }
+
+    /// The level above which what lies around the limb does not reach around what it grows from: below it the rest of the
+    /// object falls apart.
+    fn saddle(&self, field: &[f64], ends: &Ends, which: usize) -> f64 {
+        let count = self.points.len();
+        let mut order: Vec<u32> = (0..count as u32).collect();
+        order.sort_unstable_by(|a, b| field[*a as usize].total_cmp(&field[*b as usize]).then(a.cmp(b)));
+        let mut leader = vec![NONE; count];
+        let mut end = vec![NONE; count];
+        let rest = ends.others.iter().enumerate().filter(|(i, _)| *i != which).map(|(_, tip)| tip);
+        for (i, tip) in (0..).zip(rest.chain([&ends.start])) {
+            tip.ring.iter().for_each(|v| end[*v as usize] = i);
+        }
+        let mut last = 0.0;
+        for vertex in order {
+            leader[vertex as usize] = vertex;
+            for other in self.neighbors(vertex) {
+                if leader[other as usize] == NONE {
+                    continue;
+                }
+                let (a, b) = (find(&mut leader, vertex), find(&mut leader, other));
+                if a == b {
+                    continue;
+                }
+                let (one, two) = (end[a as usize], end[b as usize]);
+                if one != NONE && two != NONE && one != two {
+                    last = field[vertex as usize];
+                }
+                leader[b as usize] = a;
+                end[a as usize] = if one == NONE { two } else { one };
+            }
+        }
+        last
+    }
+
+    /// The vertices above a level that hang together with a tip.
+    fn reached(&self, field: &[f64], level: f64, tip: &Tip) -> Vec<bool> {
+        let mut inside = vec![false; self.points.len()];
+        let mut open = tip.ring.clone();
+        for vertex in &open {
+            inside[*vertex as usize] = true;
+        }
+        while let Some(vertex) = open.pop() {
+            for next in self.neighbors(vertex) {
+                if !inside[next as usize] && field[next as usize] >= level {
+                    inside[next as usize] = true;
+                    open.push(next);
+                }
+            }
+        }
+        inside
+    }
+
+    /// The faces that stay, and the edge of the hole: each vertex to the next, the rest on its left. `None` unless it is
+    /// one ring away from other openings.
+    fn rest(&self, mut inside: Vec<bool>, ends: &Ends, which: usize) -> Option<(Vec<bool>, Vec<u32>)> {
+        let home = *ends.start.ring.first()?;
+        loop {
+            let mut kept: Vec<bool> =
+                self.faces.iter().map(|face| face.iter().all(|v| !inside[*v as usize])).collect();
+            // What hangs together with the start.
+            let mut seen = vec![false; self.faces.len()];
+            let mut open: Vec<u32> =
+                self.corners(home).iter().map(|h| h / 3).filter(|f| kept[*f as usize]).collect();
+            for face in &open {
+                seen[*face as usize] = true;
+            }
+            while let Some(face) = open.pop() {
+                for twin in (3 * face..3 * face + 3).map(|h| self.twins[h as usize]) {
+                    if twin != NONE && kept[twin as usize / 3] && !seen[twin as usize / 3] {
+                        seen[twin as usize / 3] = true;
+                        open.push(twin / 3);
+                    }
+                }
+            }
+            kept = seen;
+            let mut stays = vec![false; self.points.len()];
+            let corners = self.faces.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(face, _)| face);
+            corners.flatten().for_each(|v| stays[*v as usize] = true);
+            let mut changed = false;
+            for (inside, stays) in inside.iter_mut().zip(&stays) {
+                changed |= !*inside && !*stays;
+                *inside |= !*stays;
+            }
+            let mut next: BTreeMap<u32, u32> = BTreeMap::new();
+            let mut pinched = Vec::new();
+            for h in 0..self.twins.len() as u32 {
+                let twin = self.twins[h as usize];
+                if kept[h as usize / 3]
+                    && twin != NONE
+                    && !kept[twin as usize / 3]
+                    && next.insert(self.from(h), self.to(h)).is_some()
+                {
+                    pinched.push(self.from(h));
+                }
+            }
+            if !pinched.is_empty() {
+                for vertex in pinched {
+                    inside[vertex as usize] = true;
+                }
+                continue;
+            }
+            if changed {
+                continue;
+            }
+            let others = ends.others.iter().enumerate().filter(|(i, _)| *i != which).map(|(_, tip)| tip);
+            if others.chain([&ends.start]).flat_map(|tip| &tip.ring).any(|v| inside[*v as usize]) {
+                return None;
+            }
+            let first = *next.keys().next()?;
+            let mut edge = vec![first];
+            while let Some(&to) = next.get(edge.last()?).filter(|to| **to != first) {
+                edge.push(to);
+                if edge.len() > next.len() {
+                    return None;
+                }
+            }
+            let whole = edge.len() == next.len() && edge.len() >= 3;
+            return whole.then_some((kept, edge));
+        }
+    }
+
+    /// The kept faces with the hole closed by a smooth patch that bulges toward `apex`; and for each vertex its new number.
+    fn closed(&self, kept: &[bool], edge: &[u32], apex: DVec3, girth: f64) -> (Self, Vec<u32>) {
+        let mut place = vec![NONE; self.points.len()];
+        let mut soup = Soup::default();
+        for face in self.faces.iter().zip(kept).filter(|(_, kept)| **kept).map(|(face, _)| face) {
+            let corners = face.map(|v| {
+                let slot = &mut place[v as usize];
+                if *slot == NONE {
+                    *slot = soup.points.len() as u32;
+                    soup.points.push(self.point(v));
+                }
+                *slot
+            });
+            soup.faces.push(corners);
+        }
+        let reach = (MARGIN * girth).max(1.6 * self.length(edge) / edge.len() as f64);
+        let near = self.distances(edge, reach);
+        let mut normals: BTreeMap<u32, DVec3> = BTreeMap::new();
+        for (f, face) in self.faces.iter().enumerate().filter(|(f, _)| kept[*f]) {
+            for v in face.iter().filter(|v| near[**v as usize] <= reach) {
+                *normals.entry(*v).or_default() += self.normal(f as u32);
+            }
+        }
+        let around: Vec<(DVec3, DVec3)> = normals
+            .iter()
+            .map(|(v, normal)| (self.point(*v), normal.normalize_or_zero()))
+            .filter(|(_, normal)| *normal != DVec3::ZERO)
+            .collect();
+        let patch = Patch::new(&around);
+        let onto = |p: DVec3| match &patch {
+            // A patch that runs away from its hole is none.
+            Some(patch) => Some(patch.project(p)).filter(|q| q.distance(p) < girth).unwrap_or(p),
+            None => p,
+        };
+        let rings = (edge.len() / 6).clamp(3, MOST_RINGS);
+        let count = edge.len();
+        let mut before: Vec<u32> = edge.iter().map(|v| place[*v as usize]).collect();
+        for ring in 1..rings {
+            let share = ring as f64 / rings as f64;
+            let first = soup.points.len() as u32;
+            soup.points.extend(edge.iter().map(|v| onto(self.point(*v).lerp(apex, share))));
+            let here: Vec<u32> = (first..first + count as u32).collect();
+            for k in 0..count {
+                let next = (k + 1) % count;
+                soup.faces.push([before[next], before[k], here[k]]);
+                soup.faces.push([before[next], here[k], here[next]]);
+            }
+            before = here;
+        }
+        let center = soup.points.len() as u32;
+        soup.points.push(onto(apex));
+        for k in 0..count {
+            soup.faces.push([before[(k + 1) % count], before[k], center]);
+        }
+        let mut mesh = Self::link(soup);
+        mesh.find_boundaries();
+        (mesh, place)
+    }
+}
