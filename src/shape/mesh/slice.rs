@@ -84,6 +84,7 @@ impl Mesh {
                 ends: stack.ends(),
                 surface: Box::new(stack),
                 attachment: None,
+                even: true,
             }],
             ends,
             dropped: Vec::new(),
