@@ -90,7 +90,9 @@ impl Mesh {
         // The true field lies best; on bad triangles it has eddies in which limbs are lost.
         let sound = |cut: &Cut| {
             let area = |piece: &Piece| area(&*piece.surface, SAMPLES[0], SAMPLES[1]);
-            cut.pieces.iter().map(area).sum::<f64>() < MOST_AREA * self.area()
+            // Where only one tube can be laid, a leap in it is better than none.
+            let even = cut.pieces.len() == 1 || cut.pieces.iter().all(|piece| piece.even);
+            even && cut.pieces.iter().map(area).sum::<f64>() < MOST_AREA * self.area()
         };
         let fault = match self.cut_along(plan, false) {
             Ok(cut) if sound(&cut) && cut.pieces.iter().all(|piece| piece.even) => return Ok(cut),
