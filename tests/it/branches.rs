@@ -218,7 +218,7 @@ fn branches_grow_from_branches() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+    #![proptest_config(crate::arbitrary::config(60))]
 
     /// Whatever grows from whatever: it is made and can be worked, or it is refused.
     #[test]
