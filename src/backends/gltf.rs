@@ -6,7 +6,7 @@ use super::{Backend, Error, Format};
 use crate::diag::Sink;
 use crate::ir::Language;
 use crate::ir::verify::Verified;
-use crate::preview::{Mesh, Places, Refused, Scene, Stitch, View, kind_color};
+use crate::preview::{Mesh, Model, Scene, Stitch, View, kind_color};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -14,17 +14,8 @@ use std::io::{self, Write};
 
 /// Options of the target `gltf`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
-#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Gltf {
-    /// Yarn or tiles.
-    pub view: View,
-    /// Fineness of the yarn, 1 to 5.
-    pub detail: Option<u8>,
-    /// Thickness of the yarn in mm.
-    pub yarn: Option<f64>,
-    /// Where the stitches are drawn.
-    pub places: Places,
-}
+#[serde(transparent)]
+pub struct Gltf(pub Model);
 
 /// Triangles beyond which the detail goes down by itself.
 const BUDGET: u64 = 1_000_000;
@@ -33,11 +24,9 @@ const MAX_BYTES: usize = 1 << 30;
 
 impl Backend for Gltf {
     fn emit(&self, program: &Verified<'_>, out: &mut dyn Write, sink: &mut Sink<'_>) -> Result<(), Error> {
-        let refused = |what: Refused| Error::Unsupported { backend: Self::NAME, what: what.to_string() };
-        let scene = Scene::new(program, self.yarn, self.places, sink).map_err(refused)?;
-        scene.remark(sink);
-        let mesh = Mesh::of(&scene, self.view, self.detail, BUDGET).map_err(refused)?;
-        let (mut document, bytes) = File::new(&scene, &mesh, self.view).finish();
+        let (scene, mesh) =
+            self.0.lay(program, BUDGET, sink).map_err(|what| Error::refused(Self::NAME, &what))?;
+        let (mut document, bytes) = File::new(&scene, &mesh, self.0.view).finish();
         if let Some(object) = document["nodes"].as_array_mut().and_then(|nodes| nodes.last_mut()) {
             object["extras"] = json!({ "picot": extras(program, &scene) });
         }

@@ -66,6 +66,13 @@ pub enum Error {
     },
 }
 
+impl Error {
+    /// What a backend does not write, with the reason.
+    fn refused(backend: &'static str, what: &dyn std::fmt::Display) -> Self {
+        Self::Unsupported { backend, what: what.to_string() }
+    }
+}
+
 /// One row of the list of targets.
 pub struct Target {
     /// Name, as in `--to NAME`.

@@ -3,33 +3,22 @@
 use super::{Backend, Error, Format};
 use crate::diag::Sink;
 use crate::ir::verify::Verified;
-use crate::preview::{Mesh, Places, Refused, Scene, View};
+use crate::preview::Model;
 use serde::Deserialize;
 use std::io::{self, Write};
 
 /// Options of the target `obj`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
-#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Obj {
-    /// Yarn or tiles.
-    pub view: View,
-    /// Fineness of the yarn, 1 to 5.
-    pub detail: Option<u8>,
-    /// Thickness of the yarn in mm.
-    pub yarn: Option<f64>,
-    /// Where the stitches are drawn.
-    pub places: Places,
-}
+#[serde(transparent)]
+pub struct Obj(pub Model);
 
 /// Triangles beyond which the detail goes down by itself.
 const BUDGET: u64 = 600_000;
 
 impl Backend for Obj {
     fn emit(&self, program: &Verified<'_>, out: &mut dyn Write, sink: &mut Sink<'_>) -> Result<(), Error> {
-        let refused = |what: Refused| Error::Unsupported { backend: Self::NAME, what: what.to_string() };
-        let scene = Scene::new(program, self.yarn, self.places, sink).map_err(refused)?;
-        scene.remark(sink);
-        let mesh = Mesh::of(&scene, self.view, self.detail, BUDGET).map_err(refused)?;
+        let (scene, mesh) =
+            self.0.lay(program, BUDGET, sink).map_err(|what| Error::refused(Self::NAME, &what))?;
         let mut out = io::BufWriter::with_capacity(1 << 16, out);
         writeln!(out, "# {}, in mm; made by Picot", word(&scene.name))?;
         for [x, y, z] in &mesh.positions {

@@ -3,7 +3,7 @@
 use super::{Backend, Error, Format};
 use crate::diag::Sink;
 use crate::ir::verify::Verified;
-use crate::preview::{Camera, Mesh, Places, Scene, View, picture};
+use crate::preview::{Camera, Model, Places, Refused, View, picture};
 use serde::{Deserialize, Deserializer, de};
 use std::io::{self, Write};
 
@@ -49,13 +49,9 @@ const BACKGROUND: [u8; 3] = [246, 243, 238];
 
 impl Backend for Png {
     fn emit(&self, program: &Verified<'_>, out: &mut dyn Write, sink: &mut Sink<'_>) -> Result<(), Error> {
-        let refused = |what: crate::preview::Refused| Error::Unsupported {
-            backend: Self::NAME,
-            what: what.to_string(),
-        };
-        let scene = Scene::new(program, self.yarn, self.places, sink).map_err(refused)?;
-        scene.remark(sink);
-        let mesh = Mesh::of(&scene, self.view, self.detail, BUDGET).map_err(refused)?;
+        let refused = |what: Refused| Error::refused(Self::NAME, &what);
+        let model = Model { view: self.view, detail: self.detail, yarn: self.yarn, places: self.places };
+        let (scene, mesh) = model.lay(program, BUDGET, sink).map_err(refused)?;
         let camera = Camera { azimuth: self.azimuth, elevation: self.elevation };
         let picture = picture(&scene, &mesh, self.view, camera, self.size, BACKGROUND).map_err(refused)?;
         let mut encoder = png::Encoder::new(out, picture.width, picture.height);

@@ -1,7 +1,9 @@
 //! Triangles: a scene's tiles as boxes, or its yarn as a closed tube, at a level of detail.
 
-use super::scene::{Refused, Scene, Stitch};
+use super::scene::{Places, Refused, Scene, Stitch};
 use super::sweep;
+use crate::diag::Sink;
+use crate::ir::verify::Verified;
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
 use std::ops::Range;
@@ -46,6 +48,35 @@ impl Detail {
 
 /// Most triangles that are ever made.
 pub const MAX_TRIANGLES: u64 = 12_000_000;
+
+/// What is shown of a pattern as triangles; the options of the targets that write them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Model {
+    /// Yarn or tiles.
+    pub view: View,
+    /// Fineness of the yarn, 1 to 5.
+    pub detail: Option<u8>,
+    /// Thickness of the yarn in mm.
+    pub yarn: Option<f64>,
+    /// Where the stitches are drawn.
+    pub places: Places,
+}
+
+impl Model {
+    /// The scene with its triangles; beyond `budget` of these the detail goes down by itself.
+    pub fn lay(
+        &self,
+        program: &Verified<'_>,
+        budget: u64,
+        sink: &mut Sink<'_>,
+    ) -> Result<(Scene, Mesh), Refused> {
+        let scene = Scene::new(program, self.yarn, self.places, sink)?;
+        scene.remark(sink);
+        let mesh = Mesh::of(&scene, self.view, self.detail, budget)?;
+        Ok((scene, mesh))
+    }
+}
 
 /// A closed, consistently oriented surface: normals point outward, triangles turn left seen from outside.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -18,7 +18,7 @@ mod sweep;
 mod yarn;
 
 pub use camera::Camera;
-pub use mesh::{MAX_TRIANGLES, Mesh, View};
+pub use mesh::{MAX_TRIANGLES, Mesh, Model, View};
 pub use net::Role;
 pub use scene::{DEFAULT_GAUGE, MAX_STITCHES, Piece, Places, Refused, Scene, Stitch};
 pub use shade::{MAX_SIDE, Picture, kind_color, picture};

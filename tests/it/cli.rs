@@ -1,58 +1,9 @@
 //! The command line from the outside: exit status, streams, and files that are written whole or not at all.
 
-use snapbox::cmd::{Command, OutputAssert};
+use crate::command::{Folder, picot, read, run, stderr, stdout, write};
 use snapbox::str;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
-
-fn picot(arguments: &[&str]) -> Command {
-    Command::new(env!("CARGO_BIN_EXE_picot"))
-        .args(arguments)
-        .env_remove("NO_COLOR")
-        .env_remove("CLICOLOR_FORCE")
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-}
-
-fn run(arguments: &[&str]) -> OutputAssert {
-    picot(arguments).assert()
-}
-
-fn stdout(output: &OutputAssert) -> String {
-    String::from_utf8(output.get_output().stdout.clone()).expect("UTF-8")
-}
-
-fn stderr(output: &OutputAssert) -> String {
-    String::from_utf8(output.get_output().stderr.clone()).expect("UTF-8")
-}
-
-/// An empty folder for one test.
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().expect("a temporary folder"))
-    }
-    fn path(&self, name: &str) -> String {
-        self.0.path().join(name).to_str().expect("plain names").to_owned()
-    }
-    fn names(&self) -> Vec<String> {
-        let entries = self.0.path().read_dir().expect("readable").flatten();
-        let mut names: Vec<String> =
-            entries.map(|it| it.file_name().to_string_lossy().into_owned()).collect();
-        names.sort();
-        names
-    }
-}
-
-#[expect(clippy::disallowed_methods, reason = "tests look at what was written")]
-fn read(path: impl AsRef<Path>) -> Vec<u8> {
-    std::fs::read(path).expect("written")
-}
-
-#[expect(clippy::disallowed_methods, reason = "tests write their cases")]
-fn write(path: impl AsRef<Path>, text: &str) {
-    std::fs::write(path, text).expect("writable");
-}
 
 const BALL: &str = "shapes/paper/c.toml";
 

@@ -1,20 +1,8 @@
 //! Written patterns on the command line: `check`, `check --fix`, `fmt`, and text of every kind of strangeness.
 
+use crate::command::{self, Folder, picot, run, stderr, stdout};
 use serde_json::{Value, json};
-use snapbox::cmd::{Command, OutputAssert};
 use std::path::Path;
-
-fn picot(arguments: &[&str]) -> Command {
-    Command::new(env!("CARGO_BIN_EXE_picot"))
-        .args(arguments)
-        .env_remove("NO_COLOR")
-        .env_remove("CLICOLOR_FORCE")
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-}
-
-fn run(arguments: &[&str]) -> OutputAssert {
-    picot(arguments).assert()
-}
 
 /// Status and findings of `check` for text on stdin, one a line.
 fn check(text: impl AsRef<[u8]>) -> (i32, String) {
@@ -23,38 +11,9 @@ fn check(text: impl AsRef<[u8]>) -> (i32, String) {
     (output.status.code().expect("no signal"), String::from_utf8(output.stdout).expect("UTF-8"))
 }
 
-fn stdout(output: &OutputAssert) -> String {
-    String::from_utf8(output.get_output().stdout.clone()).expect("UTF-8")
-}
-
-fn stderr(output: &OutputAssert) -> String {
-    String::from_utf8(output.get_output().stderr.clone()).expect("UTF-8")
-}
-
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().expect("a temporary folder"))
-    }
-    fn path(&self, name: &str) -> String {
-        self.0.path().join(name).to_str().expect("plain names").to_owned()
-    }
-    fn file(&self, name: &str, text: impl AsRef<[u8]>) -> String {
-        let path = self.path(name);
-        write(&path, text.as_ref());
-        path
-    }
-}
-
-#[expect(clippy::disallowed_methods, reason = "tests look at what was written")]
+/// A file as text.
 fn read(path: impl AsRef<Path>) -> String {
-    std::fs::read_to_string(path).expect("written")
-}
-
-#[expect(clippy::disallowed_methods, reason = "tests write their cases")]
-fn write(path: &str, text: &[u8]) {
-    std::fs::write(path, text).expect("writable");
+    String::from_utf8(command::read(path)).expect("UTF-8")
 }
 
 const BALL: &str = "Rnd 1: 6 sc in MR (6)\nRnd 2: inc around (12)\nRnd 3: (1 sc, inc) x 6 (18)\n";

@@ -1,10 +1,10 @@
 //! Profiles of a hand: what a crocheting hand or machine bears, told at part, round and stitch.
 
+use crate::command::{Folder, picot};
 use picot::diag::{Sink, Sources};
 use picot::frontend::crochet::{self, Conventions};
 use picot::ir::machine::Profile;
 use picot::ir::verify::verify;
-use snapbox::cmd::Command;
 use std::io;
 
 pub(crate) const HAND: &str = "name = \"arm\"\nkind = \"hand\"\nstitches = [\"sc\", \"inc\", \"dec\", \"ring\"]\nmax_increases = 6\n\
@@ -85,18 +85,13 @@ fn a_broken_profile_says_what_is_wrong() {
 }
 
 #[test]
-#[expect(clippy::disallowed_methods, reason = "a test writes its case")]
 fn shapes_are_refused_with_status_4_and_no_machine_code_is_written_for_a_hand() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let profile = folder.path().join("arm.toml");
+    let folder = Folder::new();
     let hand = HAND.replace("max_decreases = 3", "max_decreases = 6");
-    std::fs::write(&profile, format!("{hand}[gauge]\nwidth = [2.0, 20.0]\nheight = [2.0, 20.0]\n"))
-        .expect("writable");
-    let profile = profile.to_str().expect("a plain name");
-    let run = |arguments: &[&str]| {
-        let command = Command::new(env!("CARGO_BIN_EXE_picot")).args(arguments);
-        command.current_dir(env!("CARGO_MANIFEST_DIR")).assert().get_output().clone()
-    };
+    let sizes = "[gauge]\nwidth = [2.0, 20.0]\nheight = [2.0, 20.0]\n";
+    let profile = folder.file("arm.toml", format!("{hand}{sizes}"));
+    let profile = profile.as_str();
+    let run = |arguments: &[&str]| picot(arguments).assert().get_output().clone();
     let ball = ["build", "shapes/ball.toml", "--machine", profile, "--to", "crochet"];
     let output = run(&ball);
     assert_eq!(output.status.code(), Some(4));

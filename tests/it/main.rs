@@ -6,6 +6,7 @@ mod branches;
 mod charts;
 mod cli;
 mod cli_patterns;
+mod command;
 mod corpus;
 mod ebnf;
 mod examples;

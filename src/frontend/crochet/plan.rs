@@ -185,10 +185,9 @@ fn add<'t>(
         Content::Row(row) => match &row.label {
             Some(label) => {
                 check_range(label, &part.name, source, found);
-                for (first, last) in &label.set {
-                    let last = last.map_or(first.value, |last| last.value).max(first.value);
+                for (first, last) in spans(&label.set) {
                     let item = Item {
-                        first: Some(first.value),
+                        first: Some(first),
                         last: Some(last),
                         what: What::Row(row),
                         label: Some(label),
@@ -202,15 +201,8 @@ fn add<'t>(
         Content::Again(again) => repeat(part, at, again, source, room, found),
         Content::Broken { label: Some(label), count } => {
             let what = What::Broken(count.as_ref().and_then(super::gather::stated).map(|n| n.value));
-            for (first, last) in &label.set {
-                let last = last.map_or(first.value, |last| last.value).max(first.value);
-                part.items.push(Item {
-                    first: Some(first.value),
-                    last: Some(last),
-                    what,
-                    label: Some(label),
-                    at,
-                });
+            for (first, last) in spans(&label.set) {
+                part.items.push(Item { first: Some(first), last: Some(last), what, label: Some(label), at });
             }
         }
         _ => {}
@@ -219,7 +211,6 @@ fn add<'t>(
 
 fn check_range(label: &Label, part: &str, source: &Source, found: &mut Vec<Diagnostic>) {
     let mut before: Option<u32> = None;
-    let mut rows = 0_u64;
     for (first, last) in &label.set {
         let end = last.map_or(first.value, |last| last.value);
         let span = source.span(last.map_or(first.at, |last| first.at.to(last.at)).range());
@@ -234,9 +225,9 @@ fn check_range(label: &Label, part: &str, source: &Source, found: &mut Vec<Diagn
                 Diagnostic::new(Code::BadRange, message).at(span, "").in_round(part, Some(first.value)),
             );
         }
-        rows += u64::from(end.saturating_sub(first.value)) + 1;
         before = Some(end);
     }
+    let rows = numbered(&label.set);
     if let Some(said) = label.rounds
         && u64::from(said.value) != rows
     {
@@ -304,18 +295,20 @@ fn repeat<'t>(
     }
 }
 
+/// First and last row of each range of a label; one that runs backward is its first row.
+fn spans(set: &[(Num, Option<Num>)]) -> impl Iterator<Item = (u32, u32)> + Clone {
+    set.iter()
+        .map(|(first, last)| (first.value, last.map_or(first.value, |last| last.value).max(first.value)))
+}
+
 /// How many rows a label lists.
 fn numbered(set: &[(Num, Option<Num>)]) -> u64 {
-    let count = |(first, last): &(Num, Option<Num>)| {
-        u64::from(last.map_or(first.value, |last| last.value).saturating_sub(first.value)) + 1
-    };
-    set.iter().map(count).sum()
+    spans(set).map(|(first, last)| u64::from(last - first) + 1).sum()
 }
 
 /// The rows that a label lists.
 fn each(set: &[(Num, Option<Num>)]) -> impl Iterator<Item = u32> + Clone {
-    set.iter()
-        .flat_map(|(first, last)| first.value..=last.map_or(first.value, |last| last.value).max(first.value))
+    spans(set).flat_map(|(first, last)| first..=last)
 }
 
 /// Puts the rows of lists such as `Rnds 5, 7 and 9` in their places and checks that no number is missing or double.

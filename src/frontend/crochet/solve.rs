@@ -270,14 +270,11 @@ impl Job<'_> {
             Some(own) if found && self.place.beyond > 0 => (own, own + self.place.beyond),
             _ => (have, have),
         };
-        if (least..=most).contains(&used) && effect.need_ahead <= most {
-            let code = if solved.lowered.usable.is_some() { Code::ChainLength } else { Code::CountDiffers };
-            return self.differs(solved, code);
-        }
-        if used > have || effect.need_ahead > have {
+        let fits = (least..=most).contains(&used) && effect.need_ahead <= most;
+        if !fits && (used > have || effect.need_ahead > have) {
             return Some(self.over(solved, used, effect.need_ahead, (have, most)));
         }
-        if used < have && solved.lowered.spaces.is_some() {
+        if !fits && used < have && solved.lowered.spaces.is_some() {
             // What lies between the spaces is passed over.
             let loops = (have - used).min(i64::from(u32::MAX)) as u32;
             let skip = Op::Work { stitch: Stitch::plain(Kind::Skip), times: loops };
@@ -286,7 +283,7 @@ impl Job<'_> {
             solved.block.push(skip, self.file.source.span(self.at.range()));
             solved.block.append(after);
             solved.works += i64::from(loops);
-        } else if used < have {
+        } else if !fits && used < have {
             let turned = solved.lowered.ends_in_turn && conventions.is(Setting::Unworked, "turn");
             if turned || conventions.is(Setting::Unworked, "any") {
                 let loops = (have - used).min(i64::from(u32::MAX)) as u32;

@@ -149,8 +149,7 @@ impl Report<'_, '_> {
 
     fn row(&mut self, part: &str, round: u32, used: &Use, span: crate::diag::Span) {
         let found = |message: String| {
-            let found = Diagnostic::new(Code::BeyondMachine, message).in_round(part, Some(round));
-            if span.is_none() { found } else { found.at(span, "") }
+            Diagnostic::new(Code::BeyondMachine, message).in_round(part, Some(round)).at(span, "")
         };
         for (word, stitch) in &used.words {
             if !self.hand.lists(word) {
@@ -180,7 +179,7 @@ impl Report<'_, '_> {
         };
         let message = format!("the round has {loops} stitches");
         let found = Diagnostic::new(Code::BeyondMachine, message).in_round(part, Some(round));
-        self.say(field, if span.is_none() { found } else { found.at(span, "") }, &limit.to_string());
+        self.say(field, found.at(span, ""), &limit.to_string());
     }
 
     fn end(self) {

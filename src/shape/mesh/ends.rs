@@ -1,7 +1,7 @@
 //! The ends of an object: open edges, and the tips of its limbs, found as far points that stand out.
 
 use super::Mesh;
-use super::soup::{NONE, find};
+use super::soup::{NONE, meeting};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -222,13 +222,7 @@ impl Mesh {
             leader[vertex as usize] = vertex;
             area[vertex as usize] = share[vertex as usize];
             for other in self.neighbors(vertex) {
-                if leader[other as usize] == NONE {
-                    continue;
-                }
-                let (a, b) = (find(&mut leader, vertex), find(&mut leader, other));
-                if a == b {
-                    continue;
-                }
+                let Some((a, b)) = meeting(&mut leader, vertex, other) else { continue };
                 // The lower peak ends here.
                 let (high, low) =
                     if distance[peak[a as usize] as usize] >= distance[peak[b as usize] as usize] {

@@ -4,7 +4,7 @@ use super::cut::Plan;
 use super::ends::{Ends, Tip};
 use super::levels::Levels;
 use super::patch::Patch;
-use super::soup::{NONE, Soup, find};
+use super::soup::{NONE, Soup, meeting};
 use super::way::Way;
 use super::{Fault, Mesh};
 use crate::math::atan2;
@@ -165,13 +165,7 @@ impl Mesh {
         for vertex in order {
             leader[vertex as usize] = vertex;
             for other in self.neighbors(vertex) {
-                if leader[other as usize] == NONE {
-                    continue;
-                }
-                let (a, b) = (find(&mut leader, vertex), find(&mut leader, other));
-                if a == b {
-                    continue;
-                }
+                let Some((a, b)) = meeting(&mut leader, vertex, other) else { continue };
                 let (one, two) = (end[a as usize], end[b as usize]);
                 if one != NONE && two != NONE && one != two {
                     last = field[vertex as usize];

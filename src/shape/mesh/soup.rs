@@ -132,3 +132,12 @@ pub(super) fn find(leader: &mut [u32], mut i: u32) -> u32 {
     }
     i
 }
+
+/// The leaders of two sets that an edge joins, the first that of `a`; `None` where `b` is in no set yet, or in the same.
+pub(super) fn meeting(leader: &mut [u32], a: u32, b: u32) -> Option<(u32, u32)> {
+    if leader[b as usize] == NONE {
+        return None;
+    }
+    let (a, b) = (find(leader, a), find(leader, b));
+    (a != b).then_some((a, b))
+}

@@ -2,7 +2,7 @@
 
 use super::Mesh;
 use super::ends::Ends;
-use super::soup::{NONE, find};
+use super::soup::{NONE, find, meeting};
 
 /// A stretch of the object between two forks, or a fork and an end: its level lines are single rings.
 #[derive(Clone, Debug)]
@@ -77,13 +77,7 @@ impl Mesh {
             }
             let value = field[vertex as usize];
             for other in self.neighbors(vertex) {
-                if leader[other as usize] == NONE {
-                    continue;
-                }
-                let (a, b) = (find(&mut leader, vertex), find(&mut leader, other));
-                if a == b {
-                    continue;
-                }
+                let Some((a, b)) = meeting(&mut leader, vertex, other) else { continue };
                 let (one, two) = (limb[a as usize], limb[b as usize]);
                 let joined = match (one, two) {
                     (NONE, kept) | (kept, NONE) => kept,
