@@ -314,7 +314,11 @@ fn what_the_profile_asks_for_is_done() {
     assert!(reasons[0].starts_with("E2202 loops are moved to their neighbors by racks of 2"), "{reasons:?}");
     let [mut machine, _] = machines();
     machine.bed.half_gauge = false;
-    assert!(lowered(&legs, &machine).unwrap_err()[0].starts_with("E2202 tubes need every second needle"));
+    let packed = lowered(&legs, &machine).unwrap();
+    assert_eq!(faults(&legs, &packed.code, &machine), [""; 0]);
+    machine.bed.sliders = false;
+    let reasons = lowered(&legs, &machine).unwrap_err();
+    assert!(reasons[0].starts_with("E2202 loops of a tube on all needles cannot change"), "{reasons:?}");
 }
 
 #[test]

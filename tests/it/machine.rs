@@ -4,8 +4,8 @@
 use picot::backends::{kcode, knitout};
 use picot::diag::{Sink, Sources};
 use picot::frontend;
-use picot::ir::machine::{Code, Machine, execute};
-use picot::ir::{Block, Direction, Finish, Kind, Op, Part, Pattern, Program, Row, Start, Stitch};
+use picot::ir::machine::{Code, Instruction, Machine, execute};
+use picot::ir::{Block, Direction, Finish, Kind, Op, Part, Pattern, Program, Row, Start, Step, Stitch};
 use picot::lower::machine::{Lowered, Options, lower, validate::validate};
 use proptest::prelude::*;
 use std::io;
@@ -179,6 +179,33 @@ proptest! {
         }
     }
 
+    /// Sliders hold the loops that move where all needles are taken; without them a tube that needs no such move, as a
+    /// plain one, ends on waste yarn, and any other is refused.
+    #[test]
+    fn random_tubes_are_knit_on_all_needles(program in tube()) {
+        let [mut slider, mut plain] = machines();
+        (slider.bed.half_gauge, plain.bed.half_gauge) = (false, false);
+        let made = lowered(&program, &slider).map_err(|reasons| TestCaseError::fail(reasons.join("; ")))?;
+        prop_assert_eq!(faults(&program, &made.code, &slider), [""; 0], "{}", text(&made.code));
+        let [half, _] = machines();
+        let wide = lowered(&program, &half).map_err(|reasons| TestCaseError::fail(reasons.join("; ")))?;
+        prop_assert!(width(&made.code) <= width(&wide.code) / 2 + 4);
+        let mut sink = Sink::new();
+        let shaped = program.pattern.parts[0].rows.iter().any(|row| {
+            row.body.steps().any(|step| matches!(step, Step::Work(stitch) if stitch != Stitch::SC))
+        });
+        match lower(&program, &plain, &Options::default(), &mut sink) {
+            Some(made) => {
+                prop_assert!(!shaped);
+                prop_assert_eq!(faults(&program, &made.code, &plain), [""; 0], "{}", text(&made.code));
+                prop_assert_eq!(made.report.held, 0);
+                let again = through_kcode(&made.code);
+                prop_assert_eq!(faults(&program, &again, &plain), [""; 0], "{}", text(&made.code));
+            }
+            None => prop_assert!(shaped, "{:?}", sink.diagnostics()),
+        }
+    }
+
     #[test]
     fn any_bytes_are_answered_as_kcode(bytes in proptest::collection::vec(any::<u8>(), 0..300), at in any::<u16>()) {
         let line = format!("FRNT:{0}{1}{0}\nSTIF:{2}\nREAR:{0}{1}{0}\nSTIR:{2}\n>> Kn-Kn 1 300 100\n", ".".repeat(15), "-".repeat(252), "5".repeat(282));
@@ -194,6 +221,12 @@ proptest! {
             prop_assert_eq!(code.is_some(), !sink.has_errors());
         }
     }
+}
+
+/// Needles from the first to the last that a program touches.
+fn width(code: &Code) -> i32 {
+    let needles = || code.ops().iter().flat_map(Instruction::needles).map(|needle| needle.index);
+    needles().max().unwrap() - needles().min().unwrap()
 }
 
 /// Every line that makes, moves or drops a loop is needed: without it the program is unsound or makes something else.

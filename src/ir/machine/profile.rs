@@ -49,7 +49,8 @@ pub static FIELDS: &[Field] = &[
     field("bed.gauge", "needles per inch"),
     field(
         "bed.half_gauge",
-        "true: tubes lie on every second needle, which their transfers need; false: only flat pieces are knit",
+        "true: tubes lie on every second needle, which leaves needles for transfers; false: on all needles, where only \
+         sliders let loops move: without them tubes are plain and end on waste yarn",
     ),
     field("bed.sliders", "true when each needle has a slider that can hold transferred loops"),
     field("carriers.names", "the carriers, front rail first"),

@@ -7,15 +7,20 @@ use crate::ir::machine::Bed;
 /// Loops of the tail after the last chain loop.
 pub(super) const TAIL: usize = 4;
 /// A drawn-shut end of at most this many loops is bound off flat; a wider one would need too long a float to its start.
-const FLAT: usize = 12;
+pub(super) const FLAT: usize = 12;
+
+/// Whether a chain can secure the last loops.
+pub(super) fn can_bind_off(tube: &Tube, closed: bool) -> bool {
+    tube.movable().is_ok() || is_flat(tube, closed)
+}
+
+fn is_flat(tube: &Tube, closed: bool) -> bool {
+    closed && tube.heading.is_none() && tube.ahead.len() <= FLAT
+}
 
 /// Binds all loops off; returns the needle with the last chain loop.
 pub(super) fn bind_off(tube: &mut Tube, closed: bool, emitter: &mut Emitter) -> Result<ItemId, Stuck> {
-    if closed && tube.heading.is_none() && tube.ahead.len() <= FLAT {
-        flat(tube, emitter)
-    } else {
-        round(tube, emitter)
-    }
+    if is_flat(tube, closed) { flat(tube, emitter) } else { round(tube, emitter) }
 }
 
 /// The chain runs along the round, and the tube stays open.
@@ -25,7 +30,7 @@ fn round(tube: &mut Tube, emitter: &mut Emitter) -> Result<ItemId, Stuck> {
     tube.work(first, true, emitter);
     let mut last = first;
     for &next in rest {
-        tube.chain(last, next, emitter)?;
+        tube.chain(last, next, false, emitter)?;
         tube.work(next, true, emitter);
         last = next;
     }
@@ -61,7 +66,7 @@ fn flat(tube: &mut Tube, emitter: &mut Emitter) -> Result<ItemId, Stuck> {
     tube.work(first, forward(tube, first), emitter);
     let mut last = first;
     for &next in rest {
-        tube.chain(last, next, emitter)?;
+        tube.chain(last, next, true, emitter)?;
         tube.work(next, forward(tube, next), emitter);
         last = next;
     }

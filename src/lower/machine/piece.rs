@@ -145,9 +145,6 @@ impl<'m> Worker<'_, 'm> {
             sheet.end_row();
             return Ok(sheet);
         }
-        if !machine.bed.half_gauge {
-            return Err(Reason::FullGauge);
-        }
         if loops < 2 {
             return Err(Stuck::Narrow.into());
         }
@@ -189,8 +186,7 @@ impl<'m> Worker<'_, 'm> {
         let machine = self.machine();
         let circle: Vec<ItemId> = tube.ahead.iter().copied().collect();
         let yarn = self.yarns.carrier();
-        let waste = machine.waste.as_ref().filter(|waste| waste.rows > 0 && !self.options.no_waste);
-        if let Some(waste) = waste {
+        if let Some(waste) = waste_yarn(machine, self.options) {
             self.waste(waste, tube, &circle);
             self.bench.emitter.remark("the piece; unravel the waste by pulling the draw thread".to_owned());
             Yarns::bring_in(machine, yarn, &mut self.bench.emitter);
@@ -429,7 +425,7 @@ impl<'m> Worker<'_, 'm> {
         let (a, b) = (tube.item(kept), tube.item(ghost));
         let neighbors = a.bed == b.bed && (a.slot - b.slot).abs() == 1 && !a.ghost && b.ghost;
         let able = self.machine().methods.increase == Increase::Split && self.machine().performs("split");
-        if !able || !two || !neighbors || !forward {
+        if tube.packed() || !able || !two || !neighbors || !forward {
             return None;
         }
         let color = action.map_or(0, |action| action.color);
@@ -485,6 +481,13 @@ impl<'m> Worker<'_, 'm> {
 
     fn finish(&mut self, tube: &mut Tube) -> Result<(), Reason> {
         let machine = self.machine();
+        let closed = self.part.finish == Finish::DrawnShut;
+        if !bind_off::can_bind_off(tube, closed)
+            && let Some(waste) = waste_yarn(machine, self.options)
+        {
+            self.end_on_waste(tube, waste, closed);
+            return Ok(());
+        }
         let emitter = &mut self.bench.emitter;
         if let Some(sizes) = &machine.stitch_number
             && machine.extensions.iter().any(|known| known == "x-stitch-number")
@@ -504,7 +507,6 @@ impl<'m> Worker<'_, 'm> {
             }
             tube.heading = Some(heading);
         }
-        let closed = self.part.finish == Finish::DrawnShut;
         let last = bind_off::bind_off(tube, closed, emitter)?;
         for step in 0..bind_off::TAIL {
             tube.work(last, step % 2 == 1, emitter);
@@ -514,6 +516,30 @@ impl<'m> Worker<'_, 'm> {
         emitter.rest();
         Ok(())
     }
+
+    /// Courses of waste yarn hold the last loops until they are secured by hand.
+    fn end_on_waste(&mut self, tube: &mut Tube, waste: &Waste, closed: bool) {
+        let machine = self.machine();
+        self.yarns.finish(&mut self.bench.emitter);
+        let by_hand = if closed { "draw a yarn through the last loops" } else { "bind the last loops off" };
+        self.bench.emitter.remark(format!("waste section: {by_hand} by hand, then unravel the waste"));
+        let yarn = carrier(machine, &waste.carrier);
+        let circle = tube.circle(self.bench.from_right);
+        Yarns::bring_in(machine, yarn, &mut self.bench.emitter);
+        for course in 0..waste.rows {
+            self.plain_course(tube, &circle, yarn, course == 0);
+        }
+        Yarns::take_out(machine, yarn, &mut self.bench.emitter);
+        for id in circle {
+            self.bench.emitter.push(Instruction::Drop(tube.needle(id)));
+        }
+        self.bench.emitter.rest();
+    }
+}
+
+/// The waste yarn of the profile, unless it is not wanted.
+fn waste_yarn<'m>(machine: &'m Machine, options: &Options) -> Option<&'m Waste> {
+    machine.waste.as_ref().filter(|waste| waste.rows > 0 && !options.no_waste)
 }
 
 /// Every second place, then the others: the tucks of an open cast-on hang in nothing but each other. Around a tube both

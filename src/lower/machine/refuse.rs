@@ -30,8 +30,6 @@ pub(super) enum Reason {
     ThreeLimbs,
     /// A flat piece on loops of another part.
     FlatJoin,
-    /// A tube where only flat pieces can be knit.
-    FullGauge,
     /// Chains with nothing before them.
     NoLoopBefore,
 }
@@ -73,6 +71,15 @@ pub(super) fn refuse(
             "the row works loops that are not there".to_owned(),
             "check the pattern first".to_owned(),
         ),
+        Reason::Stuck(Stuck::Packed) => (
+            Finding::BeyondMachine,
+            "loops of a tube on all needles cannot change their needle".to_owned(),
+            format!(
+                "`bed.half_gauge` and `bed.sliders` of `{name}` are false: plain tubes can be knit, which end on waste \
+                 yarn (`waste.rows`) or drawn shut over at most {} loops; flat pieces can be shaped",
+                super::bind_off::FLAT
+            ),
+        ),
         Reason::Wide(needles) => (
             Finding::BeyondMachine,
             format!("{needles} needles are needed; `{name}` has {}", last - first + 1),
@@ -112,7 +119,6 @@ pub(super) fn refuse(
         | Reason::Across(_)
         | Reason::Between(_)
         | Reason::FlatJoin
-        | Reason::FullGauge
         | Reason::NoLoopBefore
         | Reason::ThreeLimbs => limbs(reason, pattern, name),
     };
@@ -155,11 +161,6 @@ fn limbs(reason: &Reason, pattern: &Pattern, name: &str) -> (Finding, String, St
             Finding::NotKnittable,
             "a flat piece on loops of another part cannot be knit".to_owned(),
             "loops of a tube hang on both beds; work the part in the round".to_owned(),
-        ),
-        Reason::FullGauge => (
-            Finding::BeyondMachine,
-            "tubes need every second needle for their transfers".to_owned(),
-            format!("`bed.half_gauge` of `{name}` is false; flat pieces can be knit"),
         ),
         Reason::NoLoopBefore => (
             Finding::NotKnittable,

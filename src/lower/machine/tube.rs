@@ -1,7 +1,8 @@
-//! A tube on both beds at half gauge: where its loops hang, and the transfers that make and take room.
+//! A tube on both beds: where its loops hang, and the transfers that make and take room.
 //!
-//! Loops lie in slots. The front loop of slot i hangs on f(2i) and the back loop on b(2i - 1), so each has an empty
-//! needle straight opposite, its *park* needle. Course order runs over the front bed from right to left, then over
+//! Loops lie in slots. At half gauge the front loop of slot i hangs on f(2i) and the back loop on b(2i - 1), so each has
+//! an empty needle straight opposite, its *park* needle. At full gauge they hang on f(i) and b(i), and the park needle is
+//! the slider opposite; without sliders loops stay where they are. Course order runs over the front bed from right to left, then over
 //! the back bed from left to right. At both edges the beds differ by at most one slot, so that the yarn always goes
 //! from bed to bed over one needle. One edge is anchored; room is made and taken at the other, the free one.
 //!
@@ -33,6 +34,18 @@ pub(super) enum Stuck {
     Stack(u32, Option<u32>),
     /// The pattern works loops that are not there.
     Underflow,
+    /// A loop of a tube on all needles has nowhere to wait on its way to another needle.
+    Packed,
+}
+
+/// Where a loop of a tube waits on its way to another needle of its bed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Park {
+    /// On the needle opposite, which half gauge leaves empty.
+    Needle,
+    /// On the slider opposite.
+    Slider,
+    Nowhere,
 }
 
 /// What a machine lets a piece do.
@@ -42,6 +55,9 @@ pub(super) struct Bounds {
     stack: u32,
     /// Slots that loops are moved by at once.
     pub(super) stride: i32,
+    /// Needles from slot to slot of a tube.
+    pitch: i32,
+    park: Park,
 }
 
 impl Bounds {
@@ -52,13 +68,19 @@ impl Bounds {
             0 => 0,
             limit => limit.saturating_sub(1).max(limit.min(3)),
         };
-        // Neighbors of a shifted loop stand up to 2 needles away before, and a slot is 2 needles.
+        let (pitch, park) = match (machine.bed.half_gauge, machine.bed.sliders) {
+            (true, _) => (2, Park::Needle),
+            (false, true) => (1, Park::Slider),
+            (false, false) => (1, Park::Nowhere),
+        };
+        // Neighbors of a shifted loop stand up to a slot away before.
         let stretch = match machine.limits.link_stretch {
             0 => i32::MAX,
-            limit => (limit.min(1000) as i32 - 2) / 4,
+            limit => (limit.min(1000) as i32 - pitch) / (2 * pitch),
         };
-        let rack = (machine.rack.preferred.min(machine.rack.max).min(1000.0) / 2.0) as i32;
-        Self { stack: if stack == 0 { u32::MAX } else { stack }, stride: rack.min(stretch).max(1) }
+        let rack = machine.rack.preferred.min(machine.rack.max).min(1000.0) as i32 / pitch;
+        let stack = if stack == 0 { u32::MAX } else { stack };
+        Self { stack, stride: rack.min(stretch).max(1), pitch, park }
     }
 }
 
@@ -203,9 +225,25 @@ impl Tube {
     fn place(&self, bed: Bed, slot: i32) -> Needle {
         match (self.heading, bed) {
             (Some(_), _) => Needle::on(bed, slot),
-            (None, Bed::Front) => Needle::front(2 * slot),
-            (None, Bed::Back) => Needle::back(2 * slot - 1),
+            (None, Bed::Front) => Needle::front(self.bounds.pitch * slot),
+            (None, Bed::Back) => Needle::back(self.bounds.pitch * slot + 1 - self.bounds.pitch),
         }
+    }
+
+    /// Where the loops of a needle wait while they move along its bed.
+    fn park(&self, needle: Needle) -> Needle {
+        let slider = self.heading.is_none() && self.bounds.park == Park::Slider;
+        Needle { slider, ..Needle::on(needle.bed.other(), needle.index) }
+    }
+
+    /// Whether a loop can be moved past its neighbors.
+    pub(super) fn movable(&self) -> Result<(), Stuck> {
+        if self.packed() && self.bounds.park == Park::Nowhere { Err(Stuck::Packed) } else { Ok(()) }
+    }
+
+    /// Whether needles straight opposite both hold loops of this tube.
+    pub(super) fn packed(&self) -> bool {
+        self.heading.is_none() && self.bounds.pitch == 1
     }
 
     pub(super) fn bed(&self, id: ItemId) -> Bed {
@@ -297,7 +335,7 @@ impl Tube {
                     continue;
                 }
                 let needle = self.place(item.bed, item.slot);
-                let park = Needle::on(item.bed.other(), needle.index);
+                let park = self.park(needle);
                 if pass == 0 {
                     emitter.xfer(needle, park);
                 } else {
@@ -312,6 +350,7 @@ impl Tube {
 
     /// Keeps a needle free after an item in course order, for the second loop of an increase.
     pub(super) fn open(&mut self, id: ItemId, emitter: &mut Emitter) -> Result<ItemId, Stuck> {
+        self.movable()?;
         let Item { bed, slot, .. } = self.item(id);
         let (left, right) = self.edges(bed);
         let along = if self.direction(id, true) == Direction::Minus { -1 } else { 1 };
@@ -356,6 +395,7 @@ impl Tube {
         second: ItemId,
         emitter: &mut Emitter,
     ) -> Result<ItemId, Stuck> {
+        self.movable()?;
         let (a, b) = (self.item(first), self.item(second));
         if a.bed == b.bed && self.row(a.bed).0.len() > 1 {
             self.close_on_bed(a.bed, first, second, emitter)
@@ -497,11 +537,22 @@ impl Tube {
         self.grow(onto, self.item(from).loops, self.item(from).wrap)
     }
 
-    /// Moves the one loop of a bound-off needle onto a neighbor.
-    pub(super) fn chain(&mut self, from: ItemId, onto: ItemId, emitter: &mut Emitter) -> Result<(), Stuck> {
+    /// Moves the one loop of a bound-off needle onto a neighbor, over the needle opposite where that is `free`.
+    pub(super) fn chain(
+        &mut self,
+        from: ItemId,
+        onto: ItemId,
+        free: bool,
+        emitter: &mut Emitter,
+    ) -> Result<(), Stuck> {
         let (start, end) = (self.needle(from), self.needle(onto));
         if start.bed == end.bed {
-            let park = Needle::on(start.bed.other(), start.index);
+            let park = if free {
+                Needle::on(start.bed.other(), start.index)
+            } else {
+                self.movable()?;
+                self.park(start)
+            };
             emitter.xfer(start, park);
             emitter.xfer(park, end);
         } else {

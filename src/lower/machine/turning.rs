@@ -21,7 +21,7 @@ impl Tube {
     }
 
     /// All items in course order, from the edge on this side.
-    fn circle(&self, from_right: bool) -> Vec<ItemId> {
+    pub(super) fn circle(&self, from_right: bool) -> Vec<ItemId> {
         let (front, back) = (self.front.iter().rev(), self.back.iter());
         if from_right { front.chain(back).copied().collect() } else { back.chain(front).copied().collect() }
     }
@@ -95,6 +95,9 @@ impl Tube {
         // The bed that first makes room moves towards the free edge; then each edge gives a loop to the other bed.
         let first = if (slack > 0) == onward { Bed::Back } else { Bed::Front };
         let (left_from, right_from) = if onward { (Bed::Front, Bed::Back) } else { (Bed::Back, Bed::Front) };
+        if by != 0 {
+            self.movable()?;
+        }
         for _ in 0..by.abs() {
             self.move_bed(first, slack, emitter);
             self.over(left_from, true, emitter)?;
@@ -215,6 +218,7 @@ impl Tube {
         new: [u32; 2],
         emitter: &mut Emitter,
     ) -> Result<[Vec<ItemId>; 3], Stuck> {
+        self.movable()?;
         self.begin_at(true, emitter)?;
         other.begin_at(false, emitter)?;
         // From this tube to the other the course runs on the back bed, and it returns on the front bed.
