@@ -175,8 +175,9 @@ impl Row {
 /// Operations with their places beside them, so that equality and passes never trip over spans.
 #[derive(Clone, Debug, Default)]
 pub struct Block {
-    ops: SmallVec<[Op; 2]>,
-    spans: SmallVec<[Span; 2]>,
+    // Most rows of written and of generated patterns take no more.
+    ops: SmallVec<[Op; 4]>,
+    spans: SmallVec<[Span; 4]>,
 }
 
 impl PartialEq for Block {
@@ -285,11 +286,20 @@ impl Block {
     /// Takes the operations from `at` on out of the block.
     #[must_use]
     pub fn split_off(&mut self, at: usize) -> Self {
-        let at = at.min(self.ops.len());
+        if at == 0 {
+            return std::mem::take(self);
+        }
+        if at >= self.ops.len() {
+            return Self::default();
+        }
         Self { ops: self.ops.drain(at..).collect(), spans: self.spans.drain(at..).collect() }
     }
     /// Adds all operations of another block.
     pub fn append(&mut self, mut other: Self) {
+        if self.is_empty() {
+            *self = other;
+            return;
+        }
         self.ops.append(&mut other.ops);
         self.spans.append(&mut other.spans);
     }

@@ -84,13 +84,13 @@ pub(crate) fn ways(
             }
         }
         let mut all = Vec::new();
-        numbers(job.body, &mut all);
+        numbers(job.body, job.file.nodes, &mut all);
         for n in all.iter().take(MAX_NUMBERS) {
             if let Some((to, leaves)) = candidate(job, solved, *n, conventions, colors) {
                 ways.push(Way { cure: Cure::Number { at: n.at, from: n.value, to }, leaves });
             }
         }
-        if before.is_some_and(|before| same(before, job.body)) {
+        if before.is_some_and(|before| same(before, job.body, job.file.nodes)) {
             if let Some(have) = job.have {
                 ways.push(Way { cure: Cure::Doubled, leaves: have });
             }
@@ -103,7 +103,7 @@ pub(crate) fn ways(
             }
         }
         let mut shapes = Vec::new();
-        flips(job.body, &mut shapes);
+        flips(job.body, job.file.nodes, &mut shapes);
         for at in shapes.iter().take(8) {
             if let Ok(other) = job.solve(conventions, colors, Some(Change::Flip(*at)))
                 && other.fault.is_none()
@@ -145,12 +145,12 @@ fn candidate(
 }
 
 /// All numbers of a row that say how much is worked.
-fn numbers(nodes: &[Node], out: &mut Vec<Num>) {
+fn numbers(nodes: &[Node], all: &[Node], out: &mut Vec<Num>) {
     for node in nodes {
         match &node.what {
             Clause::Ring { n, .. } | Clause::Skip { n, .. } | Clause::Chain { n, .. } => out.extend(*n),
             Clause::Group { body, times, .. } | Clause::Star { body, times, .. } => {
-                numbers(body, out);
+                numbers(body.of(all), all, out);
                 match times {
                     Times::N(n) | Times::Rep(n) | Times::More(n) => out.push(*n),
                     Times::Place(place) => out.extend(in_place(*place)),
@@ -181,10 +181,10 @@ fn in_place(place: Place) -> Option<Num> {
     }
 }
 
-fn flips(nodes: &[Node], out: &mut Vec<At>) {
+fn flips(nodes: &[Node], all: &[Node], out: &mut Vec<At>) {
     for node in nodes {
         match &node.what {
-            Clause::Group { body, .. } | Clause::Star { body, .. } => flips(body, out),
+            Clause::Group { body, .. } | Clause::Star { body, .. } => flips(body.of(all), all, out),
             Clause::Op(op) if matches!(op.word.shape, Shape::Inc(_) | Shape::Dec(_)) => out.push(op.word.at),
             _ => {}
         }
@@ -192,15 +192,28 @@ fn flips(nodes: &[Node], out: &mut Vec<At>) {
 }
 
 /// True when two rows say the same, places aside.
-fn same(a: &[Node], b: &[Node]) -> bool {
-    fn show(nodes: &[Node]) -> String {
-        let mut text = String::new();
-        for part in format!("{nodes:?}").split("at: At") {
-            text.push_str(part.split_once('}').map_or(part, |(_, rest)| rest));
+fn same(a: &[Node], b: &[Node], all: &[Node]) -> bool {
+    fn show(nodes: &[Node], all: &[Node], text: &mut String) {
+        for node in nodes {
+            let (mut node, mut inside) = (*node, None);
+            if let Clause::Group { body, .. } | Clause::Star { body, .. } = &mut node.what {
+                inside = Some(std::mem::take(body));
+            }
+            for part in format!("{node:?}").split("at: At") {
+                text.push_str(part.split_once('}').map_or(part, |(_, rest)| rest));
+            }
+            if let Some(body) = inside {
+                show(body.of(all), all, text);
+                text.push(')');
+            }
         }
-        text
     }
-    a.len() == b.len() && a.len() < 64 && show(a) == show(b)
+    let shown = |nodes: &[Node]| {
+        let mut text = String::new();
+        show(nodes, all, &mut text);
+        text
+    };
+    a.len() == b.len() && a.len() < 64 && shown(a) == shown(b)
 }
 
 /// The cure of the first of several rows on the cheapest path, what it hands on, and whether it is beyond doubt.
@@ -247,7 +260,7 @@ pub(crate) fn number_for(
     colors: &mut Vec<String>,
 ) -> Option<At> {
     let mut all = Vec::new();
-    numbers(job.body, &mut all);
+    numbers(job.body, job.file.nodes, &mut all);
     for n in all.iter().take(MAX_NUMBERS) {
         for step in [1, -1, 2, -2, 3, -3_i64] {
             let Ok(to) = u32::try_from(i64::from(n.value) + step) else { continue };
@@ -258,7 +271,7 @@ pub(crate) fn number_for(
         }
     }
     let mut shapes = Vec::new();
-    flips(job.body, &mut shapes);
+    flips(job.body, job.file.nodes, &mut shapes);
     shapes.into_iter().take(8).find(|at| {
         let changed = job.solve(conventions, colors, Some(Change::Flip(*at)));
         changed.is_ok_and(|solved| solved.fault.is_none() && solved.leaves(job.place.flat) == wanted)

@@ -8,7 +8,7 @@ use super::lines::fold_name;
 use super::lower::{Begin, Below, File, Place0};
 use super::plan::{self, Item, Part, What};
 use super::solve::{Job, Reading, Solved};
-use super::syntax::{Clause, Node, RowLine};
+use super::syntax::{Node, RowLine};
 use crate::diag::{Code, Diagnostic, Sink};
 use crate::ir::{self, Block, Entry, Finish, Kind, Op, PartId, Program, Row, Segment, Start, Stitch};
 use std::collections::BTreeMap;
@@ -135,7 +135,7 @@ pub(super) fn check(document: &Document<'_>, options: &Conventions, sink: &mut S
         names.entry(fold_name(&part.name)).or_insert(PartId(index as u32));
     }
     let absent = if document.tree.holds {
-        super::origins::absent_parts(&planned, document.text, &mut names)
+        super::origins::absent_parts(&planned, document, &mut names)
     } else {
         Vec::new()
     };
@@ -144,6 +144,7 @@ pub(super) fn check(document: &Document<'_>, options: &Conventions, sink: &mut S
         text: document.text,
         terms,
         defs: &document.tree.defs,
+        nodes: &document.tree.nodes,
         parts: &names,
     };
     let mut checker = Checker {
@@ -207,6 +208,9 @@ impl Checker<'_> {
         if let Some(head) = part.head {
             self.origin(head, id, &mut state);
         }
+        state.rows.reserve_exact(part.items.len());
+        state.rounds.reserve_exact(part.items.len());
+        state.opens.reserve_exact(part.items.len());
         for index in 0..part.items.len() {
             if self.total > MAX_FILE_LOOPS {
                 let Some(item) = part.items.get(index) else { break };
@@ -282,8 +286,9 @@ impl Checker<'_> {
             }
         };
         let place = self.place(part, state);
-        let at = body_at(&row.body, item.at);
-        let job = Job { body: &row.body, count, at, file: self.file, place: &place, have: state.have };
+        let body = row.body.of(self.file.nodes);
+        let at = body_at(body, item.at);
+        let job = Job { body, count, at, file: self.file, place: &place, have: state.have };
         let reading = job.read(self.conventions, &mut self.colors);
         match reading {
             Reading::Plain(solved) if solved.fault.is_none() => {
@@ -446,107 +451,6 @@ impl Checker<'_> {
                 super::effect::of(&whole, &mut direction, false).map_or(worked, super::effect::Effect::works);
         }
     }
-
-    /// Warnings and notes of a row that fits.
-    fn remarks(&mut self, part: &Part<'_>, item: &Item<'_>, row: &RowLine, solved: &Solved) {
-        let round = item.first;
-        if let Some(at) = solved.lowered.silent_chain
-            && solved.stated.is_none()
-        {
-            let found = Diagnostic::new(Code::TurningChainUnsaid, "this chain is not counted as a stitch");
-            let help = "say `(counts as dc)` or `(does not count)`, or declare `convention: tch=never`";
-            self.say(found.help(help).in_round(&part.name, round), at, "");
-        }
-        if let Some(at) = solved.lowered.evenly {
-            let found = Diagnostic::new(Code::SpreadEvenly, "spread by equal gaps, half a gap at the start");
-            self.say(found.in_round(&part.name, round), at, "");
-        }
-        if solved.lowered.spaces.is_some() {
-            let found = Diagnostic::new(
-                Code::NotChecked,
-                "goes into chain spaces: checked by count, not loop by loop",
-            );
-            self.say(found.in_round(&part.name, round), body_at(&row.body, item.at), "");
-        }
-        if solved.left > 0
-            && solved.lowered.ends_in_turn
-            && !said_leave(&row.body)
-            && !solved.lowered.leave_rest
-        {
-            let message = format!("{} loops remain beyond the turn", solved.left);
-            self.say(
-                Diagnostic::new(Code::LoopsRemain, message).in_round(&part.name, round),
-                body_at(&row.body, item.at),
-                "",
-            );
-        }
-        if super::effect::has_turn(&solved.block) && self.conventions.is(Setting::TurnMark, "bridge") {
-            let mut direction = ir::Direction::Forward;
-            let tight = super::effect::of(&solved.block, &mut direction, true).is_ok_and(|effect| {
-                effect.need_behind > 0 || solved.have.is_some_and(|have| effect.need_ahead > have)
-            });
-            if tight {
-                let found = Diagnostic::new(Code::TurnTight, "the back pass leaves no loop for the turn");
-                let help = "it can be worked; the stitch graph of the paper would need one loop more (`convention: turn-mark=bare`)";
-                self.say(found.help(help).in_round(&part.name, round), body_at(&row.body, item.at), "");
-            }
-        }
-    }
-
-    /// Tells that the loops decided how a row is read.
-    fn decided(&mut self, part: &Part<'_>, setting: Setting, value: &'static str, item: &Item<'_>, at: At) {
-        let open = matches!(
-            setting,
-            Setting::BareBracket
-                | Setting::TrailingAround
-                | Setting::TailCount
-                | Setting::FinalSlst
-                | Setting::ImplicitRepeat
-        );
-        let declare = format!("declare `convention: {}={value}`", setting.name());
-        let found = if open {
-            Diagnostic::new(
-                Code::ReadingByCount,
-                format!("read as {}={value}, the only reading that fits", setting.name()),
-            )
-        } else {
-            let usual = self.conventions.get(setting);
-            let message = format!(
-                "read as {}={value}, not {usual}: only this fits the loops and the count",
-                setting.name()
-            );
-            Diagnostic::new(Code::ReadingOverruled, message).help(declare.clone())
-        };
-        let found = Diagnostic {
-            place: Some(crate::diag::Place { part: part.name.clone(), round: item.first }),
-            ..found
-        };
-        self.say(found, at, "");
-        match self.decided.get(&setting) {
-            Some(before) if *before != value => {
-                let message = format!("{} is read as `{before}` above and as `{value}` here", setting.name());
-                self.say(Diagnostic::new(Code::ReadingsMixed, message).help(declare), at, "");
-            }
-            Some(_) => {}
-            None => {
-                self.decided.insert(setting, value);
-            }
-        }
-    }
-
-    /// Lines that are kept as text.
-    fn prose(&mut self) {
-        for line in &self.document.tree.lines {
-            if matches!(line.what, super::syntax::Content::Prose) {
-                let text = self.document.text.get(line.at.range()).unwrap_or_default();
-                let lead = text.len() - text.trim_start().len();
-                let at =
-                    At::new(line.at.start as usize + lead, line.at.start as usize + text.trim_end().len());
-                let found = Diagnostic::new(Code::LineKept, "kept as a note: no instruction in it");
-                self.say(found, at, "");
-            }
-        }
-    }
 }
 
 fn round(item: &Item<'_>, solved: Option<&Solved>, stated: Option<u32>) -> Round {
@@ -561,10 +465,6 @@ pub(super) fn body_at(body: &[Node], or: At) -> At {
         (Some(first), Some(last)) => first.at.to(last.at),
         _ => or,
     }
-}
-
-fn said_leave(body: &[Node]) -> bool {
-    body.iter().any(|node| matches!(node.what, Clause::Leave { .. }))
 }
 
 /// The number of single crochets, when a ring holds nothing else.

@@ -2,18 +2,17 @@
 
 use super::effect::{self, Effect};
 use super::lex::At;
-use super::lower::{Lowered, Site, Trouble};
+use super::lower::{Site, Trouble};
 use crate::diag::Code;
 use crate::ir::{Block, Direction, MAX_ROW, Op, Stitch};
 
-/// Closes the open end of a row.
+/// Closes the open end of a row. `spaces` are those that the row goes into without it, and those of the row below.
 pub(crate) fn close(
     block: &mut Block,
     site: Site,
     have: Option<i64>,
-    lowered: &Lowered,
+    spaces: (Option<u32>, Option<u32>),
     stated: Option<u32>,
-    spaces: Option<u32>,
 ) -> Result<(), Trouble> {
     let trouble = |code, message: String| Trouble::new(code, site.at, message);
     let limit = || Trouble::new(Code::Limit, site.at, "the numbers multiply to too many loops");
@@ -58,9 +57,9 @@ pub(crate) fn close(
     }
     let times = if per <= 0 {
         // A repeat into chain spaces goes by place; only its count can tell how often.
-        match by_place(&site, lowered, spaces) {
+        match by_place(&site, spaces) {
             Some(times) if stated.is_none() => i64::from(times),
-            _ => by_count(&site, before, pass, after, lowered, stated)?,
+            _ => by_count(&site, before.behind + after.behind, pass, spaces.0.is_some(), stated)?,
         }
     } else {
         let room = have - rest - partial;
@@ -115,27 +114,26 @@ fn even(
 }
 
 /// Passes of a repeat that goes into chain spaces, when those of the row below come out even.
-fn by_place(site: &Site, lowered: &Lowered, spaces: Option<u32>) -> Option<u32> {
-    let room = spaces?.checked_sub(lowered.spaces?)?;
+fn by_place(site: &Site, (own, below): (Option<u32>, Option<u32>)) -> Option<u32> {
+    let room = below?.checked_sub(own?)?;
     let times = room.checked_div(site.spaces)?;
     (times > 0 && times * site.spaces == room).then_some(times)
 }
 
+/// Passes of a repeat beside which the row makes `fixed` loops, when it goes into chain spaces and states its count.
 fn by_count(
     site: &Site,
-    before: Effect,
+    fixed: i64,
     pass: Effect,
-    after: Effect,
-    lowered: &Lowered,
+    in_spaces: bool,
     stated: Option<u32>,
 ) -> Result<i64, Trouble> {
-    let fixed = before.behind + after.behind;
     let room = stated.map(|stated| i64::from(stated) - fixed);
     match room {
-        Some(room) if lowered.spaces.is_some() && pass.behind > 0 && room > 0 && room % pass.behind == 0 => {
+        Some(room) if in_spaces && pass.behind > 0 && room > 0 && room % pass.behind == 0 => {
             Ok(room / pass.behind)
         }
-        Some(room) if lowered.spaces.is_some() && pass.behind > 0 => Err(Trouble::new(
+        Some(room) if in_spaces && pass.behind > 0 => Err(Trouble::new(
             Code::CountDiffers,
             site.at,
             format!("a repeat that makes {} each time cannot make {room}", pass.behind),

@@ -3,8 +3,8 @@
 use super::Document;
 use super::lex::At;
 use super::syntax::{
-    AgainLine, Clause, Content, Count, CountUnit, Counts, Fill, Header, Label, Node, Num, Op, Origin, Pair,
-    Place, RowKind, RowLine, Shape, Times, Word,
+    AgainLine, Clause, Content, Count, CountUnit, Counts, Fill, Header, Label, Node, Nodes, Num, Op, Origin,
+    Pair, Place, RowKind, RowLine, Shape, Times, Word,
 };
 use super::words::Spelled;
 use crate::ir::{Direction, Entry, Kind, Language, Terms};
@@ -13,7 +13,7 @@ use std::fmt::Write;
 impl Document<'_> {
     /// The text in canonical form. Formatting it again changes nothing.
     pub fn format(&self) -> String {
-        let printer = Printer { text: self.text, language: self.tree.language };
+        let printer = Printer { text: self.text, language: self.tree.language, all: &self.tree.nodes };
         let mut out = String::with_capacity(self.text.len() + self.text.len() / 8);
         let mut blank = true;
         for line in &self.tree.lines {
@@ -43,6 +43,8 @@ impl Document<'_> {
 struct Printer<'p> {
     text: &'p str,
     language: Language,
+    /// The clauses of the file.
+    all: &'p [Node],
 }
 
 impl Printer<'_> {
@@ -221,10 +223,10 @@ impl Printer<'_> {
         if let Some(label) = &row.label {
             self.label(label, out);
         }
-        let split = row.count.as_ref().map_or(row.body.len(), |count| {
-            row.body.iter().position(|node| node.at.start > count.at.end).unwrap_or(row.body.len())
-        });
-        let (body, after) = row.body.split_at_checked(split).unwrap_or((&row.body, &[]));
+        let whole = row.body.of(self.all);
+        let split =
+            row.count.as_ref().and_then(|count| whole.iter().position(|node| node.at.start > count.at.end()));
+        let (body, after) = split.and_then(|split| whole.split_at_checked(split)).unwrap_or((whole, &[]));
         self.nodes(body, true, out);
         if let Some(count) = &row.count {
             out.push(' ');
@@ -318,8 +320,8 @@ impl Printer<'_> {
                 }
                 (None, _) => out.push_str(self.say("mr")),
             },
-            Clause::Group { brace, body, times } => self.group(*brace, body, *times, out),
-            Clause::Star { body, times, to_stop } => self.star(body, *times, *to_stop, out),
+            Clause::Group { brace, body, times } => self.group(*brace, *body, *times, out),
+            Clause::Star { body, times, to_stop } => self.star(*body, *times, *to_stop, out),
             Clause::Op(op) => self.op(op, out),
             Clause::Again(place) => self.place(*place, out),
             Clause::RepeatAll => out.push_str("rep around"),
@@ -368,7 +370,7 @@ impl Printer<'_> {
         }
     }
 
-    fn group(&self, brace: u8, body: &[Node], times: Times, out: &mut String) {
+    fn group(&self, brace: u8, body: Nodes, times: Times, out: &mut String) {
         let kept = matches!(times, Times::Unsaid | Times::Place(_));
         let (open, close) = match brace {
             b'[' if kept => ('[', ']'),
@@ -376,7 +378,7 @@ impl Printer<'_> {
             _ => ('(', ')'),
         };
         out.push(open);
-        self.nodes(body, false, out);
+        self.nodes(body.of(self.all), false, out);
         out.push(close);
         match times {
             Times::Unsaid => {}
@@ -397,12 +399,12 @@ impl Printer<'_> {
         }
     }
 
-    fn star(&self, body: &[Node], times: Times, to_stop: bool, out: &mut String) {
+    fn star(&self, body: Nodes, times: Times, to_stop: bool, out: &mut String) {
         if !to_stop && matches!(times, Times::N(_) | Times::Fill(_)) {
             return self.group(b'(', body, times, out);
         }
         out.push('*');
-        self.nodes(body, false, out);
+        self.nodes(body.of(self.all), false, out);
         out.push_str("; rep from * ");
         match times {
             Times::N(n) | Times::Rep(n) => {

@@ -30,7 +30,7 @@ pub(super) fn read(
     };
     for line in &document.tree.lines {
         let Content::Header(header) = &line.what else { continue };
-        match header {
+        match &**header {
             Header::Pair { key: Pair::Title, value } => text(*value).clone_into(&mut heading.title),
             Header::Pair { key: Pair::Terms, value } => {
                 if let Err(right) = conventions.set("terms", text(*value)) {

@@ -1,25 +1,40 @@
 //! From the bytes of a line to folded tokens that keep their places in the original.
 
-use super::words::{Folded, Key, Meaning, Spelled, Words, fold_char};
+use super::hints::Hints;
+use super::packed::Packed;
+use super::words::{Key, Known, Spelled, Words};
 use crate::ir::{Kind, Language};
+use std::num::NonZeroU32;
 
 /// A byte range of the file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct At {
     pub start: u32,
-    pub end: u32,
+    /// One more than the end, so that a place that may be absent takes no more room.
+    behind: NonZeroU32,
+}
+
+impl Default for At {
+    fn default() -> Self {
+        Self::new(0, 0)
+    }
 }
 
 impl At {
+    #[inline]
     pub(crate) fn new(start: usize, end: usize) -> Self {
-        Self { start: start as u32, end: end as u32 }
+        Self { start: start as u32, behind: NonZeroU32::MIN.saturating_add(end as u32) }
+    }
+    pub(crate) fn end(self) -> u32 {
+        self.behind.get() - 1
     }
     /// The smallest range that covers both.
+    #[inline]
     pub(crate) fn to(self, other: Self) -> Self {
-        Self { start: self.start.min(other.start), end: self.end.max(other.end) }
+        Self { start: self.start.min(other.start), behind: self.behind.max(other.behind) }
     }
     pub(crate) fn range(self) -> std::ops::Range<usize> {
-        self.start as usize..self.end as usize
+        self.start as usize..self.end() as usize
     }
 }
 
@@ -53,32 +68,38 @@ pub(crate) struct Token {
 /// A number too large to mean anything is held as this.
 pub(crate) const TOO_BIG: u32 = u32::MAX;
 
-/// Lexes the line `text[start..end]` into `out`. Returns the place of a character that text must not hold.
+/// Lexes the line `text[start..end]` into `out`, and tells what its words promise. The error is the place of a character
+/// that text must not hold.
 pub(crate) fn line(
     text: &str,
     start: usize,
     end: usize,
     words: &Words,
     out: &mut Vec<Token>,
-) -> Result<(), At> {
+) -> Result<Hints, At> {
     out.clear();
-    let mut lexer = Lexer { text, at: start, end, words, out, last_end: usize::MAX, phrase: false };
+    let text = text.get(..end).unwrap_or_default();
+    let bytes = text.as_bytes();
+    let mut lexer =
+        Lexer { text, bytes, at: start, words, out, last_end: usize::MAX, seen: Hints::default() };
     lexer.run()?;
-    if lexer.phrase {
+    let seen = lexer.seen;
+    if seen.has(Hints::PHRASE) {
         super::phrases::fold(out);
     }
-    Ok(())
+    Ok(seen)
 }
 
 struct Lexer<'l> {
+    /// The text up to the end of the line.
     text: &'l str,
+    bytes: &'l [u8],
     at: usize,
-    end: usize,
     words: &'l Words,
     out: &'l mut Vec<Token>,
     /// End of the token before, dropped words included.
     last_end: usize,
-    phrase: bool,
+    seen: Hints,
 }
 
 impl Lexer<'_> {
@@ -96,17 +117,19 @@ impl Lexer<'_> {
     }
 
     fn byte(&self, ahead: usize) -> Option<u8> {
-        let at = self.at + ahead;
-        if at < self.end { self.text.as_bytes().get(at).copied() } else { None }
+        self.bytes.get(self.at + ahead).copied()
     }
 
     fn char(&self) -> Option<char> {
-        self.text.get(self.at..self.end)?.chars().next()
+        self.text.get(self.at..)?.chars().next()
     }
 
+    #[inline]
     fn push(&mut self, tok: Tok, from: usize) {
         self.out.push(Token { tok, at: At::new(from, self.at), glued: self.last_end == from });
         self.last_end = self.at;
+        // What nearly always follows.
+        self.at += usize::from(self.byte(0) == Some(b' '));
     }
 
     fn key(&mut self, key: Key, bytes: usize) {
@@ -127,7 +150,26 @@ impl Lexer<'_> {
         }
     }
 
+    #[inline]
     fn number(&mut self) {
+        let from = self.at;
+        let (mut value, mut at) = (0_u32, from);
+        while let Some(byte @ b'0'..=b'9') = self.bytes.get(at)
+            && at - from < 9
+        {
+            value = value * 10 + u32::from(byte - b'0');
+            at += 1;
+        }
+        if let Some(b'0'..=b'9' | b'a'..=b'z' | b'A'..=b'Z' | 0x80..) = self.bytes.get(at) {
+            return self.long_number();
+        }
+        self.at = at;
+        self.push(Tok::Int(value), from);
+    }
+
+    /// A number of any length, in any digits, or an ordinal.
+    #[cold]
+    fn long_number(&mut self) {
         let from = self.at;
         let mut value = 0_u64;
         while let Some((digit, length)) = self.digit() {
@@ -135,9 +177,12 @@ impl Lexer<'_> {
             self.at += length;
         }
         let value = u32::try_from(value).unwrap_or(TOO_BIG);
-        let suffix = self.text.get(self.at..self.end.min(self.at + 3)).map(str::as_bytes).unwrap_or_default();
+        let suffix = self.bytes.get(self.at..).unwrap_or_default();
         let letter = |index: usize| suffix.get(index).map(u8::to_ascii_lowercase);
-        let alone = suffix.get(2).is_none_or(|byte| !byte.is_ascii_alphanumeric());
+        let alone = self
+            .text
+            .get(self.at + 2..)
+            .is_none_or(|rest| rest.chars().next().is_none_or(|c| !c.is_ascii_digit() && !is_letter(c)));
         let ordinal = match (letter(0), letter(1)) {
             (Some(b's'), Some(b't')) => value % 10 == 1 && value % 100 != 11,
             (Some(b'n' | b'r'), Some(b'd')) | (Some(b't'), Some(b'h')) => true,
@@ -154,107 +199,94 @@ impl Lexer<'_> {
         }
     }
 
+    #[inline]
     fn word(&mut self) {
         let from = self.at;
-        let mut folded = [0_u8; 16];
-        let mut length = 0;
-        let mut push = |length: &mut usize, byte: u8| {
-            if let Some(slot) = folded.get_mut(*length) {
-                *slot = byte;
-            }
-            *length += 1;
-        };
-        let mut ascii = true;
-        while let Some(byte) = self.byte(0) {
-            match byte {
-                b'a'..=b'z' => push(&mut length, byte),
-                b'A'..=b'Z' => push(&mut length, byte | 0x20),
-                b'&' if length == 0 => {
-                    push(&mut length, byte);
-                    self.at += 1;
-                    break;
-                }
-                0x80.. => {
-                    let Some(c) = self.char().filter(|c| is_letter(*c)) else { break };
-                    ascii = false;
-                    for c in fold_char(c).into_iter().flat_map(Folded::chars) {
-                        let mut buffer = [0; 4];
-                        c.encode_utf8(&mut buffer).bytes().for_each(|byte| push(&mut length, byte));
-                    }
-                    self.at += c.len_utf8();
-                    continue;
-                }
-                _ => break,
-            }
+        let letters = self.bytes.get(from..).and_then(Packed::letters);
+        let Some((word, length)) = letters else { return self.any_word() };
+        if length == 0 || matches!(self.bytes.get(from + length), Some(b'-' | 0x80..)) {
+            return self.any_word();
+        }
+        self.at = from + length;
+        let known = self.words.get(&word);
+        if length == 1 || self.words.language == Language::Letters {
+            return self.letter(known, from);
+        }
+        self.known(known, from);
+    }
+
+    /// A word with other letters than those from A to Z, with hyphens, or of any length.
+    #[cold]
+    fn any_word(&mut self) {
+        let from = self.at;
+        if self.byte(0) == Some(b'&') {
             self.at += 1;
+        } else {
+            while let Some(c) =
+                self.char().filter(|c| c.is_ascii_alphabetic() || !c.is_ascii() && is_letter(*c))
+            {
+                self.at += c.len_utf8();
+            }
         }
         // `sl-st`, `demi-b`: a compound that the vocabulary has as one word.
         if self.byte(0) == Some(b'-')
             && self.byte(1).is_some_and(|byte| byte.is_ascii_alphabetic())
-            && let Some((meaning, end)) = self.compound(from)
+            && let Some((known, end)) = self.compound(from)
         {
             self.at = end;
-            self.meaning(meaning, from);
+            self.known(known, from);
             return;
         }
-        let capitals = self.words.language == Language::Letters || self.at - from == 1;
         let written = self.text.get(from..self.at).unwrap_or_default();
-        if capitals && ascii && written.bytes().all(|byte| byte.is_ascii_uppercase()) {
-            if let Some(meaning) = self.words.capital(written) {
-                self.meaning(meaning, from);
-                return;
+        let known = self.words.spelled(written);
+        if written.len() == 1 || self.words.language == Language::Letters {
+            return self.letter(known, from);
+        }
+        self.known(known, from);
+    }
+
+    /// A word where capitals may matter: a single letter, or any in the notation of letters.
+    #[inline(never)]
+    fn letter(&mut self, known: Known, from: usize) {
+        let written = self.text.get(from..self.at).unwrap_or_default();
+        if written.bytes().all(|byte| byte.is_ascii_uppercase()) {
+            if let Some(capital) = self.words.capital(written) {
+                return self.known(capital, from);
             }
-            let known = folded.get(..length).and_then(|word| self.words.get(word));
             // A capital `A` is a color, never the article.
-            if self.at - from == 1 && matches!(known, None | Some(Meaning::Key(Key::Drop))) {
-                self.push(Tok::Letter, from);
-                return;
+            if written.len() == 1 && matches!(known.tok, Tok::Word | Tok::Key(Key::Drop)) {
+                return self.push(Tok::Letter, from);
             }
         }
-        let meaning = match folded.get(..length) {
-            Some(word) => self.words.get(word),
-            None => self.words.get(super::words::fold_word(written).as_bytes()),
-        };
-        match meaning {
-            Some(meaning) => self.meaning(meaning, from),
-            None => self.push(Tok::Word, from),
-        }
+        self.known(known, from);
     }
 
     /// A word with hyphens in it that the vocabulary knows as one; the longest counts.
-    fn compound(&self, from: usize) -> Option<(Meaning, usize)> {
-        let rest = self.text.get(self.at..self.end)?;
+    fn compound(&self, from: usize) -> Option<(Known, usize)> {
+        let rest = self.text.get(self.at..)?;
         let length: usize =
             rest.chars().take_while(|c| is_letter(*c) || *c == '-').take(32).map(char::len_utf8).sum();
         let mut end = self.at + length;
         while end > self.at + 1 {
             let written = self.text.get(from..end)?;
-            let known = self.words.get(super::words::fold_word(written).as_bytes());
-            if let (Some(meaning), false) = (known, written.ends_with('-')) {
-                return Some((meaning, end));
+            let known = self.words.spelled(written);
+            if known.tok != Tok::Word && !written.ends_with('-') {
+                return Some((known, end));
             }
             end = from + written.rfind('-')?;
         }
         None
     }
 
-    fn meaning(&mut self, meaning: Meaning, from: usize) {
-        let tok = match meaning {
-            Meaning::Key(Key::Drop) => {
-                self.last_end = usize::MAX;
-                return;
-            }
-            Meaning::Key(key) => {
-                self.phrase |= super::phrases::starts_phrase(key);
-                Tok::Key(key)
-            }
-            Meaning::Stitch(spelled) => Tok::Stitch(spelled),
-            Meaning::Shaped(kind, works, makes) => Tok::Shaped(kind, works, makes),
-            Meaning::Number(number) => Tok::Int(number),
-            Meaning::Color(color) => Tok::Color(color),
-            Meaning::Def(def) => Tok::Def(def),
-        };
-        self.push(tok, from);
+    /// Takes a word for what it means.
+    #[inline]
+    fn known(&mut self, known: Known, from: usize) {
+        self.seen = self.seen.with(known.hints);
+        if known.hints == Hints::DROP {
+            self.last_end = usize::MAX;
+        } else {
+            self.push(known.tok, from);
+        }
     }
 
     fn punctuation(&mut self, byte: u8) -> Result<(), At> {
@@ -292,7 +324,7 @@ impl Lexer<'_> {
     fn minus(&mut self, bytes: usize) {
         let before_glued =
             self.last_end == self.at && self.out.last().is_some_and(|token| !is_separator(token.tok));
-        let after = self.text.get(self.at + bytes..self.end).and_then(|rest| rest.chars().next());
+        let after = self.text.get(self.at + bytes..).and_then(|rest| rest.chars().next());
         let after_space = after.is_none_or(char::is_whitespace);
         self.key(
             if before_glued {
@@ -308,7 +340,7 @@ impl Lexer<'_> {
 
     fn quoted(&mut self) {
         let from = self.at;
-        let close = self.text.get(from + 1..self.end).and_then(|rest| rest.find('"'));
+        let close = self.text.get(from + 1..).and_then(|rest| rest.find('"'));
         match close {
             Some(length) => {
                 self.at = from + length + 2;

@@ -1,13 +1,15 @@
 //! From a file to its lines: headers, comments, prose, parts and rows, each line by itself.
 
+use super::hints::Hints;
 use super::lex::{self, At, Tok, Token};
+use super::packed::Packed;
 use super::parse::{Context, Fault, FaultKind, Tokens};
 use super::row;
-use super::syntax::{Clause, Content, Header, Line, Node, Num, Pair};
+use super::syntax::{Clause, Content, Header, Line, Node, Nodes, Num, Pair};
 use super::terms::Evidence;
-use super::words::{Meaning, Words, fold_word};
+use super::words::{Words, fold_word};
 use crate::ir::Language;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
 /// Longest line that is read, in bytes.
 pub(crate) const MAX_LINE: usize = 1 << 20;
@@ -28,6 +30,8 @@ pub(crate) enum LineFault {
 /// A file in lines, with the names that it declares.
 pub(crate) struct Tree {
     pub lines: Vec<Line>,
+    /// The clauses of all rows.
+    pub nodes: Vec<Node>,
     pub faults: Vec<LineFault>,
     pub language: Language,
     pub colors: Vec<String>,
@@ -46,10 +50,20 @@ pub(crate) struct Definition {
     pub makes: u16,
 }
 
+/// What the lines of a file use one after another.
+#[derive(Default)]
+struct Room {
+    tokens: Vec<Token>,
+    nodes: RefCell<Vec<Node>>,
+    /// Below the heading of a list of text.
+    heading: bool,
+}
+
 /// Parses a whole text. `language` applies until the file names its own.
 pub(crate) fn parse(text: &str, language: Language) -> (Tree, Words) {
     let mut tree = Tree {
         lines: Vec::new(),
+        nodes: Vec::new(),
         faults: Vec::new(),
         language,
         colors: Vec::new(),
@@ -58,8 +72,7 @@ pub(crate) fn parse(text: &str, language: Language) -> (Tree, Words) {
         holds: false,
     };
     let mut words = Words::new(language);
-    let mut tokens: Vec<Token> = Vec::new();
-    let mut heading = false;
+    let mut room = Room::default();
     for (start, end) in lines(text) {
         let at = At::new(start, end);
         if end - start > MAX_LINE {
@@ -68,35 +81,33 @@ pub(crate) fn parse(text: &str, language: Language) -> (Tree, Words) {
             continue;
         }
         let raw = text.get(start..end).unwrap_or_default();
+        let round = is_round(raw);
+        if !round && is_comment(raw) {
+            tree.lines.push(Line { at, what: Content::Comment, remark: None });
+            continue;
+        }
         let (content_end, remark) = remark(raw);
-        let what = if is_round(raw) {
-            line(text, start, start + content_end, &words, &mut tokens, &mut heading, &mut tree.faults)
-        } else if raw.trim_start().is_empty() {
-            heading = false;
+        let (content_end, remark) = (start + content_end, remark.map(|from| At::new(start + from, end)));
+        let what = if !round && raw.trim_start().is_empty() {
+            room.heading = false;
             Content::Blank
-        } else if is_comment(raw) {
-            Content::Comment
-        } else if let Some(header) = header(raw, start, &mut tree, &mut words) {
+        } else if let Some(header) = (!round).then(|| header(raw, start, &mut tree, &mut words)).flatten() {
             header
         } else {
-            line(text, start, start + content_end, &words, &mut tokens, &mut heading, &mut tree.faults)
+            line(text, start, content_end, &words, &mut room, &mut tree)
         };
-        if let Content::Row(row) = &what {
-            tree.evidence.nodes(&row.body);
-            tree.holds |= holds(&row.body);
-        }
-        let remark =
-            remark.map(|from| At::new(start + from, end)).filter(|_| !matches!(what, Content::Comment));
+        let remark = remark.filter(|_| !matches!(what, Content::Comment));
         tree.lines.push(Line { at, what, remark });
     }
+    tree.nodes = room.nodes.into_inner();
     (tree, words)
 }
 
 /// True when a clause sets loops aside.
-fn holds(nodes: &[Node]) -> bool {
-    nodes.iter().any(|node| match &node.what {
+fn holds(nodes: Nodes, all: &[Node]) -> bool {
+    nodes.of(all).iter().any(|node| match &node.what {
         Clause::Hold { .. } => true,
-        Clause::Group { body, .. } | Clause::Star { body, .. } => holds(body),
+        Clause::Group { body, .. } | Clause::Star { body, .. } => holds(*body, all),
         _ => false,
     })
 }
@@ -108,8 +119,7 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, usize)> {
     std::iter::from_fn(move || {
         let start = next?;
         let rest = bytes.get(start..)?;
-        let found = rest.iter().position(|byte| matches!(byte, b'\n'..=b'\r'));
-        if let Some(length) = found {
+        if let Some(length) = line_end(rest) {
             let end = start + length;
             let two = bytes.get(end..end + 2) == Some(b"\r\n");
             next = Some(end + if two { 2 } else { 1 });
@@ -119,6 +129,16 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, usize)> {
             (!rest.is_empty()).then_some((start, bytes.len()))
         }
     })
+}
+
+/// Where the first line of `bytes` ends.
+fn line_end(bytes: &[u8]) -> Option<usize> {
+    let ends = |byte: u8| byte.wrapping_sub(b'\n') < 4;
+    // A chunk at a time, without a branch a byte.
+    let (chunks, _) = bytes.as_chunks::<16>();
+    let whole = chunks.iter().take_while(|chunk| !chunk.iter().fold(false, |any, byte| any | ends(*byte)));
+    let from = whole.count() * 16;
+    Some(from + bytes.get(from..)?.iter().position(|byte| ends(*byte))?)
 }
 
 /// Where the content of a line ends, and where a `//` remark begins.
@@ -131,17 +151,13 @@ fn remark(raw: &str) -> (usize, Option<usize>) {
     }
 }
 
-/// True for the line that patterns are made of, which no header or heading begins like: `Rnd 7`, `Rows 3`.
+/// True for the line that patterns are made of, which no header or heading begins like: `Rnd 7`, `Rows 3`, `5.`.
 fn is_round(raw: &str) -> bool {
     let bytes = raw.as_bytes().trim_ascii_start();
-    let rest = match bytes.split_first_chunk() {
-        Some((word, rest)) if [*b"rnd", *b"row"].contains(&word.map(|byte| byte.to_ascii_lowercase())) => {
-            rest
-        }
-        _ => return false,
-    };
-    let rest = rest.strip_prefix(b"s").unwrap_or(rest).trim_ascii_start();
-    rest.first().is_some_and(u8::is_ascii_digit)
+    let Some((word, length)) = Packed::letters(bytes) else { return false };
+    let rest = bytes.get(length..).unwrap_or_default();
+    let rest = rest.strip_prefix(b".").unwrap_or(rest).trim_ascii_start();
+    rest.first().is_some_and(u8::is_ascii_digit) && word.is_one_of(&["", "r", "rnd", "row", "round"])
 }
 
 fn is_comment(raw: &str) -> bool {
@@ -196,15 +212,14 @@ fn header(raw: &str, base: usize, tree: &mut Tree, words: &mut Words) -> Option<
             match Language::parse(value.trim()) {
                 Some(language) => {
                     tree.language = language;
-                    let declared = std::mem::replace(words, Words::new(language));
-                    words.inherit(declared);
+                    words.change(language);
                 }
                 None => tree
                     .faults
                     .push(LineFault::Header { at, what: "a language: en, es, pt, fr, de, no, letters" }),
             }
         }
-        return Some(Content::Header(Header::Pair { key: *pair, value: at }));
+        return Some(header_of(Header::Pair { key: *pair, value: at }));
     }
     if word.eq_ignore_ascii_case("convention") {
         let value = after.trim_start().strip_prefix(':')?;
@@ -218,10 +233,10 @@ fn header(raw: &str, base: usize, tree: &mut Tree, words: &mut Words) -> Option<
         if name.trim().is_empty() || value.trim().is_empty() {
             tree.faults.push(LineFault::Header { at: trim(raw, base), what: "`color NAME = #RRGGBB`" });
         } else if tree.colors.len() < usize::from(u16::MAX) {
-            words.declare(name.trim(), Meaning::Color(tree.colors.len() as u16));
+            words.declare(name.trim(), Tok::Color(tree.colors.len() as u16));
             tree.colors.push(name.trim().to_owned());
         }
-        return Some(Content::Header(Header::Color { name: at, value: value_at }));
+        return Some(header_of(Header::Color { name: at, value: value_at }));
     }
     if word.eq_ignore_ascii_case("def") && after.starts_with(char::is_whitespace) {
         return def(after, after_base, raw, base, tree, words);
@@ -231,6 +246,10 @@ fn header(raw: &str, base: usize, tree: &mut Tree, words: &mut Words) -> Option<
         return None;
     }
     None
+}
+
+fn header_of(header: Header) -> Content {
+    Content::Header(Box::new(header))
 }
 
 fn convention(value: &str, base: usize, tree: &mut Tree) -> Content {
@@ -245,7 +264,7 @@ fn convention(value: &str, base: usize, tree: &mut Tree) -> Content {
         }
         offset += piece.len() + 1;
     }
-    Content::Header(Header::Convention { settings })
+    header_of(Header::Convention { settings })
 }
 
 /// `def shell = 1 -> 5 5 dc in one stitch`.
@@ -280,12 +299,12 @@ fn def(
     match parsed {
         Some((works, makes, text)) if single => {
             if tree.defs.len() < usize::from(u16::MAX) {
-                words.declare(name.trim(), Meaning::Def(tree.defs.len() as u16));
+                words.declare(name.trim(), Tok::Def(tree.defs.len() as u16));
                 let stem = name.trim().split('-').next().filter(|stem| stem.len() < name.trim().len());
                 let base = stem.and_then(|stem| Words::english_stitch(&fold_word(stem)));
                 tree.defs.push(Definition { base, works: works.value as u16, makes: makes.value as u16 });
             }
-            Some(Content::Header(Header::Def { name: name_at, works, makes, text }))
+            Some(header_of(Header::Def { name: name_at, works, makes, text }))
         }
         _ => {
             tree.faults.push(LineFault::Header { at: trim(raw, base), what: "`def NAME = WORKS -> MAKES`" });
@@ -305,40 +324,35 @@ const PAIRS: &[(&str, Pair)] = &[
 ];
 
 /// A line that is no header: a part, a row, or prose.
-fn line(
-    text: &str,
-    start: usize,
-    end: usize,
-    words: &Words,
-    tokens: &mut Vec<Token>,
-    heading: &mut bool,
-    faults: &mut Vec<LineFault>,
-) -> Content {
-    if let Err(at) = lex::line(text, start, end, words, tokens) {
-        faults.push(LineFault::Character(at));
-        return Content::Broken { label: None, count: None };
-    }
+fn line(text: &str, start: usize, end: usize, words: &Words, room: &mut Room, tree: &mut Tree) -> Content {
+    let Room { tokens, nodes, heading } = room;
+    let seen = match lex::line(text, start, end, words, tokens) {
+        Ok(seen) => seen,
+        Err(at) => {
+            tree.faults.push(LineFault::Character(at));
+            return Content::Broken { label: None, count: None };
+        }
+    };
     let fault = Fault { done: 0, kind: FaultKind::Expected("an instruction") };
-    let context = Context { total: tokens.len(), furthest: Cell::new(fault) };
-    let input = Tokens::new(tokens, &context);
+    let context = Context { tokens, furthest: Cell::new(fault), nodes };
+    let input = Tokens::new(&context);
     if input.is_empty() {
         return Content::Blank;
     }
-    let labeled = row::is_labeled(input);
-    if labeled {
+    let (mut rest, mut head) = row::head(input);
+    if head.is_labeled() {
         *heading = false;
-    }
-    let raw = text.get(start..end).filter(|_| !labeled).unwrap_or_default().trim();
-    if LISTS.iter().any(|name| raw.trim_end_matches(':').trim_end().eq_ignore_ascii_case(name)) {
-        *heading = true;
-        return Content::Comment;
-    }
-    if *heading {
-        return Content::Comment;
-    }
-    if !labeled {
+    } else {
+        let raw = text.get(start..end).unwrap_or_default().trim();
+        if LISTS.iter().any(|name| raw.trim_end_matches(':').trim_end().eq_ignore_ascii_case(name)) {
+            *heading = true;
+            return Content::Comment;
+        }
+        if *heading {
+            return Content::Comment;
+        }
         if let Ok((_, head)) = row::part(input) {
-            return Content::Part(head);
+            return Content::Part(Box::new(head));
         }
         if row::is_abbreviation(input) || !row::has_stitch_word(input) {
             // A part whose origin is wrong is no prose.
@@ -347,38 +361,40 @@ fn line(
             }
         }
         if row::opens_part(input) {
-            return broken(input, context.furthest.get(), start, end, faults);
+            return broken(input, start, end, tree);
         }
-        context.furthest.set(Fault { done: 0, kind: FaultKind::Expected("an instruction") });
+        context.furthest.set(fault);
+        (rest, head) = row::head(input);
     }
-    match row::row(input) {
-        Ok((_, content)) => content,
-        Err(_) => broken(input, context.furthest.get(), start, end, faults),
+    match row::row(rest, head) {
+        Ok((_, content)) => {
+            if let Content::Row(row) = &content {
+                let nodes = nodes.borrow();
+                if tree.evidence.wants(seen) {
+                    tree.evidence.nodes(row.body, &nodes);
+                }
+                tree.holds |= seen.has(Hints::HOLD) && holds(row.body, &nodes);
+            }
+            content
+        }
+        Err(_) => broken(input, start, end, tree),
     }
 }
 
-fn broken(input: Tokens<'_>, fault: Fault, start: usize, end: usize, faults: &mut Vec<LineFault>) -> Content {
+fn broken(input: Tokens<'_>, start: usize, end: usize, tree: &mut Tree) -> Content {
+    let fault = input.context.furthest.get();
     let line = At::new(start, end);
     let unread =
         |token: &&Token| token.tok == Tok::Word || token.tok == Tok::Key(super::words::Key::Tunisian);
     // A word that is not known explains more than what it led to.
     let word = match fault.kind {
         FaultKind::Deep(_) => None,
-        _ => input.rest.iter().find(unread).filter(|_| input.rest.len() < 4096),
+        _ => input.rest().iter().find(unread).filter(|_| input.len() < 4096),
     };
-    let token = word.or(input.rest.get(fault.done)).map(|token| (token.tok, token.at));
-    faults.push(LineFault::Syntax { kind: fault.kind, token, line });
+    let token = word.or(input.rest().get(fault.done)).map(|token| (token.tok, token.at));
+    tree.faults.push(LineFault::Syntax { kind: fault.kind, token, line });
     let (label, count) = row::frame(input);
-    Content::Broken { label: label.map(Box::new), count }
-}
-
-impl Words {
-    /// Takes over the names that a file declared before it named its language.
-    fn inherit(&mut self, before: Self) {
-        for (name, meaning) in before.declared() {
-            self.declare(&name, meaning);
-        }
-    }
+    Content::Broken { label: label.map(Box::new), count: count.map(Box::new) }
 }
 
 /// The name of a part, folded so that spelling differences do not matter.

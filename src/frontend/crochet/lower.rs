@@ -36,6 +36,8 @@ pub(crate) struct File<'f> {
     pub text: &'f str,
     pub terms: Terms,
     pub defs: &'f [super::lines::Definition],
+    /// The clauses of all rows.
+    pub nodes: &'f [Node],
     pub parts: &'f BTreeMap<String, PartId>,
 }
 
@@ -207,7 +209,7 @@ impl<'l> Lower<'l> {
             self.counted -= 1;
             let at = list
                 .iter()
-                .fold(At::default(), |at, node| if at.end == 0 { node.at } else { at.to(node.at) });
+                .fold(At::default(), |at, node| if at.end() == 0 { node.at } else { at.to(node.at) });
             self.site(block.ops().len(), fill, None, None, at)?;
             let after = body.get(lead.len() + list.len()..).unwrap_or_default();
             self.each(after, None, None, &mut block)?;
@@ -371,8 +373,12 @@ impl<'l> Lower<'l> {
         let at = node.at;
         match &node.what {
             Clause::Ring { n, word } => self.ring(*n, *word, at, out),
-            Clause::Group { brace, body, times } => self.group(*brace, body, *times, at, out),
-            Clause::Star { body, times, to_stop } => self.star(body, *times, *to_stop, at, out),
+            Clause::Group { brace, body, times } => {
+                self.group(*brace, body.of(self.file.nodes), *times, at, out)
+            }
+            Clause::Star { body, times, to_stop } => {
+                self.star(body.of(self.file.nodes), *times, *to_stop, at, out)
+            }
             Clause::Op(op) => self.op(op, at, out),
             Clause::Again(place) => {
                 let Some(word) = self.last_word else {

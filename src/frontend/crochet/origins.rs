@@ -1,11 +1,12 @@
 //! Parts that start from other parts: joined pieces, held loops, stitches picked up.
 
+use super::Document;
 use super::check::{Checker, State};
 use super::lex::At;
 use super::lines::fold_name;
 use super::lower::Below;
 use super::plan::{Part, What};
-use super::syntax::{Clause, Node, Num, Origin, Piece};
+use super::syntax::{Clause, Node, Nodes, Num, Origin, Piece};
 use crate::diag::{Code, Diagnostic};
 use crate::ir::{self, Finish, PartId, Segment, Start};
 use std::collections::BTreeMap;
@@ -14,14 +15,14 @@ use std::collections::btree_map::Entry as Slot;
 /// Parts that only a `hold` names; they are entered behind the others.
 pub(super) fn absent_parts(
     planned: &[Part<'_>],
-    text: &str,
+    document: &Document<'_>,
     names: &mut BTreeMap<String, PartId>,
 ) -> Vec<(String, At)> {
-    fn holds<'n>(nodes: &'n [Node], out: &mut Vec<&'n At>) {
-        for node in nodes {
+    fn holds(nodes: Nodes, all: &[Node], out: &mut Vec<At>) {
+        for node in nodes.of(all) {
             match &node.what {
-                Clause::Hold { name, .. } => out.push(name),
-                Clause::Group { body, .. } | Clause::Star { body, .. } => holds(body, out),
+                Clause::Hold { name, .. } => out.push(*name),
+                Clause::Group { body, .. } | Clause::Star { body, .. } => holds(*body, all, out),
                 _ => {}
             }
         }
@@ -30,14 +31,14 @@ pub(super) fn absent_parts(
     let mut all = Vec::new();
     for item in planned.iter().flat_map(|part| &part.items) {
         if let What::Row(row) = item.what {
-            holds(&row.body, &mut all);
+            holds(row.body, &document.tree.nodes, &mut all);
         }
     }
     for at in all {
-        let name = text.get(at.range()).unwrap_or_default().trim_matches('"');
+        let name = document.text.get(at.range()).unwrap_or_default().trim_matches('"');
         if let Slot::Vacant(slot) = names.entry(fold_name(name)) {
             slot.insert(PartId((planned.len() + absent.len()) as u32));
-            absent.push((name.to_owned(), *at));
+            absent.push((name.to_owned(), at));
         }
     }
     absent

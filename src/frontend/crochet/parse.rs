@@ -1,13 +1,11 @@
 //! The parser's ground: tokens as nom input, the furthest fault, and the smallest parsers.
 
 use super::lex::{At, Tok, Token};
-use super::syntax::{Num, Sep};
+use super::syntax::{Node, Nodes, Num, Sep};
 use super::words::Key;
 use crate::ir::Kind;
-use nom::{Err, IResult, Input, Needed};
-use std::cell::Cell;
-use std::iter::{Copied, Enumerate};
-use std::slice::Iter;
+use nom::{Err, IResult};
+use std::cell::{Cell, RefCell};
 
 /// What a parser gives. Faults are kept beside it, in the context, so that backtracking costs nothing.
 pub(crate) type Res<'t, T> = IResult<Tokens<'t>, T, ()>;
@@ -39,56 +37,89 @@ pub(crate) struct Fault {
 }
 
 /// What all parsers of a line share.
-pub(crate) struct Context {
-    pub total: usize,
+pub(crate) struct Context<'t> {
+    pub tokens: &'t [Token],
     pub furthest: Cell<Fault>,
+    /// All clauses read so far, those of a group before those around it.
+    pub nodes: &'t RefCell<Vec<Node>>,
 }
 
-/// The rest of a line.
+impl Context<'_> {
+    /// Keeps clauses that stand in a row.
+    pub(crate) fn keep(&self, nodes: &[Node]) -> Nodes {
+        let mut all = self.nodes.borrow_mut();
+        let from = all.len() as u32;
+        all.extend_from_slice(nodes);
+        Nodes { from, count: nodes.len() as u32 }
+    }
+}
+
+/// The rest of a line. Small, for it is handed on and back by every parser.
 #[derive(Clone, Copy)]
 pub(crate) struct Tokens<'t> {
-    pub rest: &'t [Token],
-    pub context: &'t Context,
+    pub context: &'t Context<'t>,
+    /// Tokens read so far.
+    pub done: u32,
     pub depth: u8,
     /// Directly inside a `*` that is open.
     pub in_star: bool,
 }
 
 impl<'t> Tokens<'t> {
-    pub(crate) fn new(rest: &'t [Token], context: &'t Context) -> Self {
-        Self { rest, context, depth: 0, in_star: false }
+    pub(crate) fn new(context: &'t Context<'t>) -> Self {
+        Self { context, done: 0, depth: 0, in_star: false }
     }
+    /// The tokens that are left.
+    pub(crate) fn rest(self) -> &'t [Token] {
+        self.context.tokens.get(self.done()..).unwrap_or_default()
+    }
+    #[inline]
+    fn token(self, index: usize) -> Option<&'t Token> {
+        self.context.tokens.get(self.done() + index)
+    }
+    #[inline]
     pub(crate) fn tok(self, index: usize) -> Option<Tok> {
-        self.rest.get(index).map(|token| token.tok)
+        self.token(index).map(|token| token.tok)
     }
+    #[inline]
     pub(crate) fn key(self, index: usize) -> Option<Key> {
         match self.tok(index) {
             Some(Tok::Key(key)) => Some(key),
             _ => None,
         }
     }
+    #[inline]
     pub(crate) fn at(self, index: usize) -> At {
-        self.rest.get(index).map(|token| token.at).unwrap_or_default()
+        self.token(index).map(|token| token.at).unwrap_or_default()
     }
+    #[inline]
     pub(crate) fn glued(self, index: usize) -> bool {
-        self.rest.get(index).is_some_and(|token| token.glued)
+        self.token(index).is_some_and(|token| token.glued)
     }
+    #[inline]
     pub(crate) fn done(self) -> usize {
-        self.context.total - self.rest.len()
+        self.done as usize
     }
+    /// Number of tokens that are left.
+    pub(crate) fn len(self) -> usize {
+        self.context.tokens.len() - self.done()
+    }
+    #[inline]
     pub(crate) fn is_empty(self) -> bool {
-        self.rest.is_empty()
+        self.done() >= self.context.tokens.len()
     }
     /// The input after `count` tokens.
+    #[inline]
     pub(crate) fn skip(self, count: usize) -> Self {
-        Self { rest: self.rest.get(count..).unwrap_or_default(), ..self }
+        let done = (self.done() + count).min(self.context.tokens.len());
+        Self { done: done as u32, ..self }
     }
     /// The range from the next token to the last one before `end`.
     pub(crate) fn until(self, end: Self) -> At {
-        let taken = self.rest.len() - end.rest.len();
-        match (self.rest.first(), taken.checked_sub(1).and_then(|last| self.rest.get(last))) {
-            (Some(first), Some(last)) => first.at.to(last.at),
-            _ => At { start: self.at(0).start, end: self.at(0).start },
+        let first = self.at(0);
+        match end.done().checked_sub(1).and_then(|last| self.context.tokens.get(last)) {
+            Some(last) if end.done > self.done => first.to(last.at),
+            _ => At::new(first.start as usize, first.start as usize),
         }
     }
     /// Fails here, and another way of reading may be tried.
@@ -104,40 +135,10 @@ impl<'t> Tokens<'t> {
     /// Remembers a fault if none was found further on.
     pub(crate) fn note(self, kind: FaultKind) {
         let done = self.done();
-        if done > self.context.furthest.get().done || self.context.furthest.get().done == 0 {
+        let furthest = self.context.furthest.get().done;
+        if done > furthest || furthest == 0 {
             self.context.furthest.set(Fault { done, kind });
         }
-    }
-}
-
-impl<'t> Input for Tokens<'t> {
-    type Item = Token;
-    type Iter = Copied<Iter<'t, Token>>;
-    type IterIndices = Enumerate<Self::Iter>;
-
-    fn input_len(&self) -> usize {
-        self.rest.len()
-    }
-    fn take(&self, index: usize) -> Self {
-        Self { rest: self.rest.get(..index).unwrap_or(self.rest), ..*self }
-    }
-    fn take_from(&self, index: usize) -> Self {
-        self.skip(index)
-    }
-    fn take_split(&self, index: usize) -> (Self, Self) {
-        (self.take_from(index), self.take(index))
-    }
-    fn position<P: Fn(Token) -> bool>(&self, predicate: P) -> Option<usize> {
-        self.rest.iter().position(|token| predicate(*token))
-    }
-    fn iter_elements(&self) -> Self::Iter {
-        self.rest.iter().copied()
-    }
-    fn iter_indices(&self) -> Self::IterIndices {
-        self.rest.iter().copied().enumerate()
-    }
-    fn slice_index(&self, count: usize) -> Result<usize, Needed> {
-        if count <= self.rest.len() { Ok(count) } else { Err(Needed::new(count - self.rest.len())) }
     }
 }
 
@@ -195,10 +196,11 @@ pub(crate) fn separator(input: Tokens<'_>) -> Res<'_, Sep> {
         sep = Sep::Comma;
     }
     for _ in 0..2 {
-        if matches!(rest.key(0), Some(Key::And | Key::Then)) {
-            rest = rest.skip(1);
-            sep = Sep::And;
+        if !matches!(rest.key(0), Some(Key::And | Key::Then)) {
+            break;
         }
+        rest = rest.skip(1);
+        sep = Sep::And;
     }
     Ok((rest, sep))
 }
@@ -230,15 +232,14 @@ pub(crate) fn name(input: Tokens<'_>) -> Res<'_, At> {
                 | Tok::Def(_)
                 | Tok::Shaped(..),
             ) => {}
-            Some(Tok::Int(_)) if end.rest.len() < input.rest.len() => {}
-            Some(Tok::Key(Key::Hyphen | Key::Slash | Key::Neg))
-                if end.rest.len() < input.rest.len() && end.glued(0) => {}
+            Some(Tok::Int(_)) if end.done > input.done => {}
+            Some(Tok::Key(Key::Hyphen | Key::Slash | Key::Neg)) if end.done > input.done && end.glued(0) => {}
             Some(Tok::Key(key)) if is_word(key) => {}
             _ => break,
         }
         end = end.skip(1);
     }
-    if end.rest.len() == input.rest.len() {
+    if end.done == input.done {
         return input.fail("a name");
     }
     Ok((end, input.until(end)))

@@ -3,7 +3,7 @@
 use super::gather::is_work;
 use super::lex::At;
 use super::lines::{Tree, fold_name};
-use super::syntax::{AgainLine, Clause, Content, Label, Num, Origin, PartHead, RowKind, RowLine};
+use super::syntax::{AgainLine, Clause, Content, Label, Node, Num, Origin, PartHead, RowKind, RowLine};
 use crate::diag::{Code, Diagnostic, Source};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -118,7 +118,7 @@ pub(crate) fn parts<'t>(
                 // The same line twice in a row is a slip, not a new part.
                 let twice =
                     || above.is_some_and(|above| text.get(above.range()) == text.get(line.at.range()));
-                if begins && again() && !twice() && starts(row) {
+                if begins && again() && !twice() && starts(row, &tree.nodes) {
                     let span = source.span(row.label.as_ref().map_or(line.at, |label| label.at).range());
                     let name = format!("piece {}", parts.len() + 1);
                     if restart {
@@ -148,9 +148,11 @@ pub(crate) fn parts<'t>(
     }
     for part in &mut parts {
         order(part, source, found);
-        part.flat = is_flat(part);
+        part.flat = is_flat(part, &tree.nodes);
         part.joined = part.items.iter().any(|item| match item.what {
-            What::Row(row) => row.body.iter().any(|node| matches!(node.what, Clause::Join { .. })),
+            What::Row(row) => {
+                row.body.of(&tree.nodes).iter().any(|node| matches!(node.what, Clause::Join { .. }))
+            }
             What::Again(..) | What::Broken(_) => false,
         });
     }
@@ -158,11 +160,11 @@ pub(crate) fn parts<'t>(
 }
 
 /// True for a row that makes its own first loops.
-fn starts(row: &RowLine) -> bool {
-    let first = row
-        .body
-        .iter()
-        .find(|node| is_work(&node.what) || matches!(node.what, Clause::Chain { .. } | Clause::Ring { .. }));
+fn starts(row: &RowLine, all: &[Node]) -> bool {
+    let first =
+        row.body.of(all).iter().find(|node| {
+            is_work(&node.what) || matches!(node.what, Clause::Chain { .. } | Clause::Ring { .. })
+        });
     first.is_some_and(|node| match &node.what {
         Clause::Ring { .. } | Clause::Chain { .. } => true,
         Clause::Op(op) => {
@@ -200,7 +202,7 @@ fn add<'t>(
         },
         Content::Again(again) => repeat(part, at, again, source, room, found),
         Content::Broken { label: Some(label), count } => {
-            let what = What::Broken(count.as_ref().and_then(super::gather::stated).map(|n| n.value));
+            let what = What::Broken(count.as_deref().and_then(super::gather::stated).map(|n| n.value));
             for (first, last) in spans(&label.set) {
                 part.items.push(Item { first: Some(first), last: Some(last), what, label: Some(label), at });
             }
@@ -352,22 +354,20 @@ fn order(part: &mut Part<'_>, source: &Source, found: &mut Vec<Diagnostic>) {
 }
 
 /// True when the part is worked in rows that turn.
-fn is_flat(part: &Part<'_>) -> bool {
+fn is_flat(part: &Part<'_>, all: &[Node]) -> bool {
     let kind = part.items.iter().find_map(|item| item.label.map(|label| label.kind));
     match kind {
         Some(RowKind::Row) => true,
         Some(RowKind::Rnd) => false,
         Some(RowKind::R | RowKind::None) | None => part.items.iter().any(|item| match item.what {
             What::Row(row) => {
-                let first = row.body.iter().position(|node| is_work(&node.what));
-                let last = row.body.iter().rposition(|node| is_work(&node.what));
+                let body = row.body.of(all);
+                let first = body.iter().position(|node| is_work(&node.what));
+                let last = body.iter().rposition(|node| is_work(&node.what));
                 let edge = |index: usize| {
                     first.is_none_or(|first| index < first) || last.is_none_or(|last| index > last)
                 };
-                row.body
-                    .iter()
-                    .enumerate()
-                    .any(|(index, node)| matches!(node.what, Clause::Turn) && edge(index))
+                body.iter().enumerate().any(|(index, node)| matches!(node.what, Clause::Turn) && edge(index))
             }
             What::Again(..) | What::Broken(_) => false,
         }),

@@ -17,7 +17,7 @@ impl Lower<'_> {
         out: &mut Block,
     ) -> Result<(), Trouble> {
         if self.main_color(at, n.is_some())? {
-            let name = At { start: at.start, end: at.start + 2 };
+            let name = At::new(at.start as usize, at.start as usize + 2);
             self.color(name, true, out);
             return match (n, word) {
                 (Some(_), Some(word)) => self.placed(word, n, None, None, at, out),

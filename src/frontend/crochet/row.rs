@@ -2,28 +2,49 @@
 
 use super::clause::body;
 use super::lex::Tok;
-use super::parse::{FaultKind, Res, Tokens, any_key, int, key, name};
+use super::parse::{Context, FaultKind, Res, Tokens, any_key, int, key, name};
 use super::place::multiplier;
 use super::syntax::{
-    AgainLine, Amounts, Clause, Content, Count, CountUnit, Label, Node, Num, Numbers, Origin, PartHead,
-    Piece, RowKind, RowLine, Spot, Times,
+    AgainLine, Amounts, Clause, Content, Count, CountUnit, Label, Node, Nodes, Num, Numbers, Origin,
+    PartHead, Piece, RowKind, RowLine, Sep, Spot, Times,
 };
 use super::words::Key;
 use nom::Parser;
 use nom::combinator::opt;
 use nom::sequence::{pair, preceded};
-use smallvec::smallvec;
+use smallvec::{SmallVec, smallvec};
 
-/// A row with its label and count; the whole line must be read.
-pub(crate) fn row(input: Tokens<'_>) -> Res<'_, Content> {
+/// What stands before the body of a row.
+pub(crate) struct Head {
+    label: Option<Label>,
+    /// The line is a row of a table.
+    table: bool,
+}
+
+/// The beginning of a row, up to and with its label.
+pub(crate) fn head(input: Tokens<'_>) -> (Tokens<'_>, Head) {
     let bold = input.key(0) == Some(Key::Stop);
     let (input, table) = bullet(input);
-    let (input, label) = match label(input, table) {
+    match label(input, table) {
         // `**Rnd 2:** 6 sc`: bold type ends.
-        Ok((rest, label)) if bold && rest.key(0) == Some(Key::Stop) => (rest.skip(1), Some(label)),
-        Ok((rest, label)) => (rest, Some(label)),
-        Err(_) => (input, None),
-    };
+        Ok((rest, label)) if bold && rest.key(0) == Some(Key::Stop) => {
+            (rest.skip(1), Head { label: Some(label), table })
+        }
+        Ok((rest, label)) => (rest, Head { label: Some(label), table }),
+        Err(_) => (input, Head { label: None, table }),
+    }
+}
+
+impl Head {
+    /// True when the row is called by a number.
+    pub(crate) fn is_labeled(&self) -> bool {
+        self.label.is_some()
+    }
+}
+
+/// A row behind its head, with its count; the whole line must be read.
+pub(crate) fn row(input: Tokens<'_>, head: Head) -> Res<'_, Content> {
+    let Head { label, table } = head;
     if label.is_some()
         && input.key(0) == Some(Key::Rep)
         && let Ok((rest, again)) = again(input, label.clone())
@@ -55,8 +76,8 @@ pub(crate) fn frame(input: Tokens<'_>) -> (Option<Label>, Option<Count>) {
         Ok((rest, label)) => (rest, Some(label)),
         Err(_) => (input, None),
     };
-    let from = input.rest.len().saturating_sub(8);
-    let found = (from..input.rest.len()).find_map(|index| {
+    let from = input.len().saturating_sub(8);
+    let found = (from..input.len()).find_map(|index| {
         let (rest, found) = count(input.skip(index), table).ok()?;
         end_mark(rest).is_empty().then_some(found)
     });
@@ -164,21 +185,18 @@ pub(crate) fn label(input: Tokens<'_>, table: bool) -> Res<'_, Label> {
     let mut label =
         Label { kind: kind.unwrap_or(RowKind::None), set, rounds: None, tags: Vec::new(), at: input.at(0) };
     while let Some(Key::Open(brace)) = rest.key(0) {
-        let Some(length) = rest.rest.iter().position(|token| token.tok == Tok::Key(Key::Close(brace))) else {
-            break;
-        };
-        let inside = Tokens { rest: rest.rest.get(1..length).unwrap_or_default(), ..rest };
-        match (inside.tok(0), inside.key(1), inside.rest.len()) {
-            (Some(Tok::Int(value)), Some(Key::Rnd | Key::Row | Key::R), 2) => {
+        let inside = rest.skip(1);
+        let close = inside.rest().iter().position(|token| token.tok == Tok::Key(Key::Close(brace)));
+        let Some(length) = close else { break };
+        match (length, inside.tok(0), inside.key(1)) {
+            (2, Some(Tok::Int(value)), Some(Key::Rnd | Key::Row | Key::R)) => {
                 label.rounds = Some(Num { value, at: inside.at(0) });
             }
-            (Some(Tok::Stitch(_)), ..) => return Err(nom::Err::Error(())),
-            (Some(_), ..) if inside.rest.len() <= 4 => {
-                label.tags.push(inside.until(Tokens { rest: &[], ..inside }));
-            }
+            (0, ..) | (_, Some(Tok::Stitch(_)), _) => return Err(nom::Err::Error(())),
+            (1..=4, ..) => label.tags.push(inside.until(inside.skip(length))),
             _ => return Err(nom::Err::Error(())),
         }
-        rest = rest.skip(length + 1);
+        rest = inside.skip(length + 1);
     }
     let ended = match rest.key(0) {
         Some(Key::Colon | Key::Dot | Key::Dash) => true,
@@ -270,7 +288,7 @@ pub(crate) fn count(input: Tokens<'_>, table: bool) -> Res<'_, Count> {
                 return said(input, rest);
             }
             let (after, first) = amount(rest)?;
-            if after.rest.len() == rest.rest.len() - 1 || matches!(first.1, CountUnit::Kind(_)) {
+            if after.done == rest.done + 1 || matches!(first.1, CountUnit::Kind(_)) {
                 return input.fail("`st` after the count");
             }
             units.push(first);
@@ -299,6 +317,7 @@ fn finish<'t>(from: Tokens<'t>, rest: Tokens<'t>, units: Amounts) -> Res<'t, Cou
 }
 
 /// True when a count follows and the line ends behind it.
+#[inline]
 pub(crate) fn count_ahead(input: Tokens<'_>, back: bool) -> bool {
     let possible = match input.key(0) {
         Some(Key::Open(_)) => matches!(input.tok(1), Some(Tok::Int(_) | Tok::Ord(_))),
@@ -317,12 +336,15 @@ pub(crate) fn count_ahead(input: Tokens<'_>, back: bool) -> bool {
         }
         _ => false,
     };
-    // A mark that goes forward counts only at the end of the line.
-    possible
-        && count(input, false).is_ok_and(|(rest, _)| {
-            let rest = pause(pause(rest));
-            rest.is_empty() || is_cue(rest)
-        })
+    possible && ends_in_count(input)
+}
+
+/// A count, and nothing behind it but what may follow one. A mark that goes forward counts only at the end of the line.
+fn ends_in_count(input: Tokens<'_>) -> bool {
+    count(input, false).is_ok_and(|(rest, _)| {
+        let rest = pause(pause(rest));
+        rest.is_empty() || is_cue(rest)
+    })
 }
 
 /// Steps over a mark between a count and what follows it.
@@ -360,19 +382,31 @@ fn cue<'t>(input: Tokens<'t>, line: &mut RowLine) -> Tokens<'t> {
     }
     if let Ok((rest, nodes)) = body(start)
         && end_mark(rest).is_empty()
-        && nodes.iter().all(|node| steers(&node.what))
+        && let Some(body) = with_cue(input.context, line.body, nodes)
     {
-        line.body.extend(nodes.into_iter().map(|node| Node { sep: super::syntax::Sep::Dot, ..node }));
+        line.body = body;
         return end_mark(rest);
     }
     match start.key(0) {
         Some(Key::Fo | Key::Stuff | Key::Pm | Key::Join | Key::Do | Key::Closed) => {
-            let end = start.skip(start.rest.len());
+            let end = start.skip(start.len());
             line.cue = Some(start.until(end));
             end
         }
         _ => input,
     }
+}
+
+/// The clauses of a row with those behind its count, if these only steer.
+fn with_cue(context: &Context<'_>, body: Nodes, cue: Nodes) -> Option<Nodes> {
+    let mut all: SmallVec<[Node; 6]> = SmallVec::from_slice(body.of(&context.nodes.borrow()));
+    for node in cue.of(&context.nodes.borrow()) {
+        if !steers(&node.what) {
+            return None;
+        }
+        all.push(Node { sep: Sep::Dot, ..*node });
+    }
+    Some(context.keep(&all))
 }
 
 /// A clause that neither works nor makes a loop.
@@ -480,12 +514,6 @@ fn join(input: Tokens<'_>) -> Res<'_, Origin> {
     Ok((rest, Origin::Join { pieces }))
 }
 
-/// True when the line begins with a row label.
-pub(crate) fn is_labeled(input: Tokens<'_>) -> bool {
-    let (input, table) = bullet(input);
-    label(input, table).is_ok()
-}
-
 /// True for a line that can only be meant to open a part: `NAME: from ..`, `NAME: join ..`.
 pub(crate) fn opens_part(input: Tokens<'_>) -> bool {
     let Ok((rest, _)) = name(input) else { return false };
@@ -496,7 +524,7 @@ pub(crate) fn opens_part(input: Tokens<'_>) -> bool {
 
 /// True when something on the line can only be an instruction.
 pub(crate) fn has_stitch_word(input: Tokens<'_>) -> bool {
-    input.rest.iter().any(|token| {
+    input.rest().iter().any(|token| {
         matches!(
             token.tok,
             Tok::Stitch(_)
@@ -510,7 +538,7 @@ pub(crate) fn has_stitch_word(input: Tokens<'_>) -> bool {
 /// `sc = single crochet`: a line of a list of abbreviations.
 pub(crate) fn is_abbreviation(input: Tokens<'_>) -> bool {
     let input = bullet(input).0;
-    let term = input.rest.iter().take_while(|token| {
+    let term = input.rest().iter().take_while(|token| {
         matches!(
             token.tok,
             Tok::Stitch(_)

@@ -4,7 +4,7 @@ use super::conventions::{Conventions, Setting};
 use super::effect::{self, Effect};
 use super::gather::stated;
 use super::lex::At;
-use super::lower::{Begin, Below, Change, File, Lower, Lowered, Place0, Trouble};
+use super::lower::{Begin, Below, Change, File, Lower, Lowered, Place0, Site, Trouble};
 use super::syntax::{Count, CountUnit, Node};
 use crate::diag::Code;
 use crate::ir::{Block, Direction, Kind, MAX_ROW, Op, Stitch};
@@ -188,8 +188,11 @@ impl Job<'_> {
         if let (Some(site), true) = (&lowered.site, nothing) {
             return Err(no_foundation(site.at));
         }
-        if let Some(site) = &lowered.site {
-            super::close::close(&mut block, site.clone(), have, &lowered, stated_count, self.place.spaces)?;
+        if let Some(site) = &mut lowered.site {
+            let (body, partial) = (std::mem::take(&mut site.body), site.partial.take());
+            let site = Site { body, partial, ..*site };
+            let spaces = (lowered.spaces, self.place.spaces);
+            super::close::close(&mut block, site, have, spaces, stated_count)?;
         }
         let mut direction = Direction::Forward;
         let effect =
@@ -457,8 +460,7 @@ fn implicit(lowered: &mut Lowered, have: Option<i64>) {
     {
         let body = std::mem::take(&mut lowered.block);
         let at = lowered.first_work.unwrap_or_default();
-        lowered.site =
-            Some(super::lower::Site { index: 0, body, partial: None, last: None, at, spaces: 0, even: None });
+        lowered.site = Some(Site { index: 0, body, partial: None, last: None, at, spaces: 0, even: None });
     }
 }
 

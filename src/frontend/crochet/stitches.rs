@@ -90,7 +90,9 @@ impl Lower<'_> {
                         *count += u64::from(self.number(op.n, 1));
                     }
                 }
-                Clause::Group { body, .. } | Clause::Star { body, .. } => self.count_basic(body, counts),
+                Clause::Group { body, .. } | Clause::Star { body, .. } => {
+                    self.count_basic(body.of(self.file.nodes), counts);
+                }
                 _ => {}
             }
         }
@@ -99,6 +101,10 @@ impl Lower<'_> {
     /// The stitch of a word, and how often one mention stands for it.
     pub(crate) fn stitch(&mut self, word: Word, entry: Option<Entry>) -> Result<(Stitch, u32), Trouble> {
         let entry = entry.or(self.entry).unwrap_or_default();
+        if let (Shape::Plain, Some(base)) = (word.shape, word.base) {
+            let kind = self.kind(base, word.at)?;
+            return Ok((Stitch { kind, works: kind.works(), makes: kind.makes(), entry }, 1));
+        }
         let base = match word.base {
             Some(base) => Some(self.kind(base, word.at)?),
             None => None,
@@ -182,7 +188,35 @@ impl Lower<'_> {
         if op.evenly {
             return self.evenly(op, at, out);
         }
-        self.placed(op.word, op.n, op.place, op.entry, at, out)
+        match op.place {
+            Some(_) => self.placed(op.word, op.n, op.place, op.entry, at, out),
+            None => self.in_turn(op.word, op.n, op.entry, at, out),
+        }
+    }
+
+    /// Stitches in the loops that come next.
+    fn in_turn(
+        &mut self,
+        word: Word,
+        n: Option<Num>,
+        entry: Option<Entry>,
+        at: At,
+        out: &mut Block,
+    ) -> Result<(), Trouble> {
+        let (stitch, each) = self.stitch(word, entry)?;
+        let count = self.number(n, 1);
+        if count == 0 {
+            return Err(nothing(n, at));
+        }
+        if count > 1 && word.shape == Shape::Plain && stitch.works == 1 && stitch.makes == 1 {
+            self.touch(Setting::NStitch);
+            if self.conventions.is(Setting::NStitch, "one-place") {
+                self.work(fan(stitch, count, at)?, 1, at, out);
+                return Ok(());
+            }
+        }
+        self.work(stitch, count.saturating_mul(each), at, out);
+        Ok(())
     }
 
     /// Stitches in a place.
@@ -196,33 +230,17 @@ impl Lower<'_> {
         at: At,
         out: &mut Block,
     ) -> Result<(), Trouble> {
+        let Some(place) = place else { return self.in_turn(word, n, entry, at, out) };
         let (stitch, each) = self.stitch(word, entry)?;
         let count = self.number(n, 1);
         if count == 0 {
-            return Err(Trouble::new(Code::MissingOperand, n.map_or(at, |n| n.at), "0 stitches")
-                .help("leave the clause out, or say how many"));
+            return Err(nothing(n, at));
         }
         let plain = word.shape == Shape::Plain && stitch.works == 1 && stitch.makes == 1;
         let times = count.saturating_mul(each);
-        let fan = |count: u32| {
-            let makes = u16::try_from(count);
-            makes
-                .map(|makes| Stitch { makes, ..stitch })
-                .map_err(|_| Trouble::new(Code::Limit, at, format!("{count} stitches in one place")))
-        };
+        let fan = |count: u32| fan(stitch, count, at);
         match place {
-            None => {
-                if plain && count > 1 {
-                    self.touch(Setting::NStitch);
-                    if self.conventions.is(Setting::NStitch, "one-place") {
-                        let stitch = fan(count)?;
-                        self.work(stitch, 1, at, out);
-                        return Ok(());
-                    }
-                }
-                self.work(stitch, times, at, out);
-            }
-            Some(Place::Next(m, only)) => {
+            Place::Next(m, only) => {
                 self.out.leave_rest |= only;
                 let m_value = self.number(m, 1);
                 self.next_loops(
@@ -234,10 +252,10 @@ impl Lower<'_> {
                     out,
                 )?;
             }
-            Some(Place::Last(m)) => self.next_loops(stitch, n, m, plain, at, out)?,
-            Some(Place::Each(m) | Place::Held(m)) => self.next_loops(stitch, n, Some(m), plain, at, out)?,
-            Some(Place::EachFill(end) | Place::Fill(end)) => {
-                let each_one = matches!(place, Some(Place::EachFill(_)));
+            Place::Last(m) => self.next_loops(stitch, n, m, plain, at, out)?,
+            Place::Each(m) | Place::Held(m) => self.next_loops(stitch, n, Some(m), plain, at, out)?,
+            Place::EachFill(end) | Place::Fill(end) => {
+                let each_one = matches!(place, Place::EachFill(_));
                 let (stitch, times) =
                     if each_one && plain && count > 1 { (fan(count)?, 1) } else { (stitch, times) };
                 let span = self.span(at);
@@ -245,7 +263,7 @@ impl Lower<'_> {
                 block.push(Op::Work { stitch, times }, span);
                 return self.fill(end, block, None, at, out);
             }
-            Some(Place::EveryNth(nth)) => {
+            Place::EveryNth(nth) => {
                 let nth_value = self.num(nth);
                 if stitch.works != 1 || nth_value < 2 {
                     return Err(Trouble::new(Code::Ambiguous, at, "which stitches this takes is not clear")
@@ -258,7 +276,7 @@ impl Lower<'_> {
                 block.push(Op::Work { stitch, times: 1 }, span);
                 return self.fill(super::syntax::Fill::End, block, None, at, out);
             }
-            Some(Place::Same | Place::SameAsJoin) => {
+            Place::Same | Place::SameAsJoin => {
                 if self.worked {
                     self.work(Stitch { works: 0, ..stitch }, times, at, out);
                 } else {
@@ -266,7 +284,7 @@ impl Lower<'_> {
                     self.work(stitch, if plain { 1 } else { times }, at, out);
                 }
             }
-            Some(Place::FromHook(k, starting)) => {
+            Place::FromHook(k, starting) => {
                 if !starting && count > 1 && self.is_fan(k) {
                     self.out.begin = Some(Begin::Ring);
                     self.work(Stitch { works: 0, ..stitch }, times, at, out);
@@ -280,17 +298,17 @@ impl Lower<'_> {
                     self.work(stitch, 1, at, out);
                 }
             }
-            Some(Place::Space(_)) => {
+            Place::Space(_) => {
                 self.enter_space();
                 self.work(Stitch { works: 0, entry: Entry::Space, ..stitch }, times, at, out);
             }
-            Some(Place::Ring) => {
+            Place::Ring => {
                 if stitch.works > 1 {
                     let message = "a decrease in a ring has no stitches to work together";
                     return Err(Trouble::new(Code::NoFoundation, at, message));
                 }
                 // `6 sc in MC` on loops may mean the main color.
-                let tail = At { start: at.end.saturating_sub(2).max(at.start), end: at.end };
+                let tail = At::new(at.end().saturating_sub(2).max(at.start) as usize, at.end() as usize);
                 let worked = self.row.below != Below::Nothing && self.out.begin.is_none();
                 if worked && self.main_color(tail, false)? {
                     self.color(tail, false, out);
@@ -300,18 +318,18 @@ impl Lower<'_> {
                 self.need_ring();
                 self.work(Stitch { works: 0, ..stitch }, times, at, out);
             }
-            Some(Place::TopOfChain) => {
+            Place::TopOfChain => {
                 let works = u16::from(self.row.chain_counted);
                 let stitch = if plain { fan(count)? } else { stitch };
                 self.work(Stitch { works, ..stitch }, 1, at, out);
             }
-            Some(Place::Over(m)) => {
+            Place::Over(m) => {
                 let m = self.num(m);
                 let over = Self::divide(stitch, m, at)?;
                 self.work(stitch, over, at, out);
             }
-            Some(Place::OverChain) => self.over(None, stitch, n, times, at, out)?,
-            Some(Place::OverPart(name)) => self.over(Some(name), stitch, n, times, at, out)?,
+            Place::OverChain => self.over(None, stitch, n, times, at, out)?,
+            Place::OverPart(name) => self.over(Some(name), stitch, n, times, at, out)?,
         }
         Ok(())
     }
@@ -535,6 +553,18 @@ impl Lower<'_> {
         self.push_work(plain, chains.saturating_sub(1), at, out);
         self.push_work(Stitch { works, makes: 1, ..plain }, 1, at, out);
     }
+}
+
+fn nothing(n: Option<Num>, at: At) -> Trouble {
+    Trouble::new(Code::MissingOperand, n.map_or(at, |n| n.at), "0 stitches")
+        .help("leave the clause out, or say how many")
+}
+
+/// So many of a stitch in one place.
+fn fan(stitch: Stitch, count: u32, at: At) -> Result<Stitch, Trouble> {
+    u16::try_from(count)
+        .map(|makes| Stitch { makes, ..stitch })
+        .map_err(|_| Trouble::new(Code::Limit, at, format!("{count} stitches in one place")))
 }
 
 /// Spreads `count` stitches among `times` others by equal gaps, half a gap at the start.

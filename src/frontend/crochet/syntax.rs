@@ -30,14 +30,14 @@ pub(crate) enum Content {
     Comment,
     /// Text that is read as prose because nothing in it is an instruction.
     Prose,
-    Header(Header),
-    Part(PartHead),
+    Header(Box<Header>),
+    Part(Box<PartHead>),
     Row(Box<RowLine>),
     Again(Box<AgainLine>),
     /// A line that could not be read; its finding has been reported. `label` tells which row it was meant to be.
     Broken {
         label: Option<Box<Label>>,
-        count: Option<Count>,
+        count: Option<Box<Count>>,
     },
 }
 
@@ -173,7 +173,7 @@ pub(crate) enum CountUnit {
 #[derive(Debug)]
 pub(crate) struct RowLine {
     pub label: Option<Label>,
-    pub body: Vec<Node>,
+    pub body: Nodes,
     pub count: Option<Count>,
     pub cue: Option<At>,
 }
@@ -199,8 +199,23 @@ pub(crate) enum Sep {
     And,
 }
 
+/// Clauses that stand in a row, among all clauses of a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Nodes {
+    pub from: u32,
+    pub count: u32,
+}
+
+impl Nodes {
+    /// The clauses themselves, out of all.
+    pub(crate) fn of(self, all: &[Node]) -> &[Node] {
+        let from = self.from as usize;
+        all.get(from..from + self.count as usize).unwrap_or_default()
+    }
+}
+
 /// A clause with its place.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub at: At,
     pub sep: Sep,
@@ -208,7 +223,7 @@ pub(crate) struct Node {
 }
 
 /// One clause of a row.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum Clause {
     /// `MR 7`, `magic ring, 7 sc`; no number for the ring alone.
     Ring {
@@ -218,17 +233,17 @@ pub(crate) enum Clause {
     /// Something in brackets.
     Group {
         brace: u8,
-        body: Vec<Node>,
+        body: Nodes,
         times: Times,
     },
     /// `*3 sc, inc; rep from * around`.
     Star {
-        body: Vec<Node>,
+        body: Nodes,
         times: Times,
         to_stop: bool,
     },
     /// Stitches.
-    Op(Box<Op>),
+    Op(Op),
     /// `and in each ch across`: the stitch just named.
     Again(Place),
     /// `rep around` without a star: the row from its start.
@@ -303,7 +318,7 @@ pub(crate) enum Fill {
 }
 
 /// Stitches of one kind.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Op {
     pub entry: Option<Entry>,
     /// The sign of a back pass.

@@ -1,7 +1,8 @@
 //! US or UK: the whole file is looked at, for one word alone does not tell.
 
-use super::lex::At;
-use super::syntax::{Clause, Counts, Node, Num};
+use super::hints::Hints;
+use super::lex::{At, Tok};
+use super::syntax::{Clause, Counts, Node, Nodes, Num};
 use super::words::Spelled;
 use crate::ir::Terms;
 
@@ -27,12 +28,21 @@ impl Evidence {
     }
 
     fn word(&mut self, spelled: Spelled, at: At) {
-        match (spelled.us, spelled.uk) {
-            (Some(us), Some(uk)) if us != uk => self.open = self.open.or(Some(at)),
-            (Some(_), None) => self.us = self.us.or(Some(at)),
-            (None, Some(_)) => self.uk = self.uk.or(Some(at)),
+        match Hints::of(Tok::Stitch(spelled)) {
+            Hints::OPEN => self.open = self.open.or(Some(at)),
+            Hints::US => self.us = self.us.or(Some(at)),
+            Hints::UK => self.uk = self.uk.or(Some(at)),
             _ => {}
         }
+    }
+
+    /// True when a line with such words may tell what is not known yet.
+    pub(crate) fn wants(self, seen: Hints) -> bool {
+        // A phrase may be any stitch; a chain that counts as one tells by its height.
+        let any = seen.has(Hints::PHRASE) || seen.has(Hints::COUNTS);
+        (any || seen.has(Hints::US)) && self.us.is_none()
+            || (any || seen.has(Hints::UK)) && self.uk.is_none()
+            || (any || seen.has(Hints::OPEN)) && self.open.is_none()
     }
 
     /// `ch 3 (counts as dc)`: the chain is as high as the stitch it stands for.
@@ -49,8 +59,8 @@ impl Evidence {
     }
 
     /// Takes the words of a row.
-    pub(crate) fn nodes(&mut self, nodes: &[Node]) {
-        for node in nodes {
+    pub(crate) fn nodes(&mut self, nodes: Nodes, all: &[Node]) {
+        for node in nodes.of(all) {
             match &node.what {
                 Clause::Op(op) => {
                     if let Some(base) = op.word.base {
@@ -62,7 +72,7 @@ impl Evidence {
                         self.word(base, word.at);
                     }
                 }
-                Clause::Group { body, .. } | Clause::Star { body, .. } => self.nodes(body),
+                Clause::Group { body, .. } | Clause::Star { body, .. } => self.nodes(*body, all),
                 Clause::Chain { n, counts } => self.chain(*n, *counts, node.at),
                 _ => {}
             }

@@ -41,7 +41,7 @@ impl Checker<'_> {
         }
         let before = index.checked_sub(1).and_then(|index| part.items.get(index));
         let before_body = match before.map(|item| item.what) {
-            Some(What::Row(row) | What::Again(row, _)) => Some(&row.body[..]),
+            Some(What::Row(row) | What::Again(row, _)) => Some(row.body.of(self.file.nodes)),
             _ => None,
         };
         let conventions = self.conventions;
@@ -185,7 +185,7 @@ impl Checker<'_> {
         let item = part.items.get(index)?;
         let place = Place0 { below: Below::Loops, ..self.place(part, state) };
         let job = Job {
-            body: &row.body,
+            body: row.body.of(self.file.nodes),
             count: None,
             at: before.at,
             file: self.file,
@@ -234,7 +234,7 @@ fn onward(
             segments: &[],
         };
         let job = Job {
-            body: &row.body,
+            body: row.body.of(file.nodes),
             count: row.count.as_ref(),
             at: item.at,
             file,

@@ -1,7 +1,11 @@
 //! Words of a pattern: folded spellings and what they mean to the grammar.
 
+use super::hints::Hints;
+use super::lex::Tok;
+use super::packed::{Packed, Table};
 use crate::ir::{Kind, Language};
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 /// A stitch name as written: what it means in US and in UK terms. Both are equal where the terms do not matter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -148,133 +152,106 @@ pub(crate) enum Key {
     Drop,
 }
 
-/// What a word is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Meaning {
-    Key(Key),
-    Stitch(Spelled),
-    Shaped(Kind, u16, u16),
-    Number(u32),
-    Color(u16),
-    Def(u16),
+/// What a word means, and what it promises of its line.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Known {
+    pub tok: Tok,
+    pub hints: Hints,
+}
+
+impl Known {
+    /// A word that means nothing.
+    pub(crate) const WORD: Self = Self::new(Tok::Word, Hints::NONE);
+
+    const fn new(tok: Tok, hints: Hints) -> Self {
+        Self { tok, hints }
+    }
+}
+
+impl From<Tok> for Known {
+    fn from(tok: Tok) -> Self {
+        Self::new(tok, Hints::of(tok))
+    }
+}
+
+/// The words of one language, over those of English.
+struct Vocabulary {
+    map: Table,
+    capitals: BTreeMap<&'static str, Tok>,
+    /// Words of more letters than the table takes.
+    long: BTreeMap<String, Tok>,
+    language: Language,
 }
 
 /// The vocabulary of one file: English, under the words of its language, under the names it declares.
 pub(crate) struct Words {
-    map: Table,
-    capitals: BTreeMap<&'static str, Meaning>,
-    long: BTreeMap<String, Meaning>,
-    /// The file declared names, of any length.
-    declares: bool,
+    fixed: &'static Vocabulary,
+    declared: BTreeMap<String, Tok>,
     pub language: Language,
 }
 
-/// Folded words of up to 16 bytes in one open-addressed table.
-struct Table {
-    slots: Vec<(u128, Meaning)>,
+/// The vocabulary of a language, made when it is first asked for.
+fn vocabulary(language: Language) -> &'static Vocabulary {
+    static MADE: [OnceLock<Vocabulary>; Language::ALL.len()] =
+        [const { OnceLock::new() }; Language::ALL.len()];
+    static ENGLISH: OnceLock<Vocabulary> = OnceLock::new();
+    MADE.get(language as usize).unwrap_or(&ENGLISH).get_or_init(|| Vocabulary::new(language))
 }
 
-const SLOTS: usize = 2048;
-
-fn pack(word: &[u8]) -> Option<u128> {
-    let mut bytes = [0_u8; 16];
-    bytes.get_mut(..word.len())?.copy_from_slice(word);
-    Some(u128::from_le_bytes(bytes))
-}
-
-fn slot(key: u128) -> usize {
-    let folded = (key as u64) ^ ((key >> 64) as u64).rotate_left(29);
-    (folded.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 53) as usize
-}
-
-impl Table {
-    fn new() -> Self {
-        Self { slots: vec![(0, Meaning::Key(Key::Drop)); SLOTS] }
-    }
-    fn get(&self, key: u128) -> Option<Meaning> {
-        let mut at = slot(key);
-        for _ in 0..SLOTS {
-            match self.slots.get(at) {
-                Some((found, meaning)) if *found == key => return Some(*meaning),
-                Some((0, _)) | None => return None,
-                Some(_) => at = (at + 1) % SLOTS,
-            }
-        }
-        None
-    }
-    fn set(&mut self, key: u128, meaning: Meaning) {
-        let mut at = slot(key);
-        for _ in 0..SLOTS {
-            match self.slots.get_mut(at) {
-                Some(found) if found.0 == key || found.0 == 0 => {
-                    *found = (key, meaning);
-                    return;
-                }
-                _ => at = (at + 1) % SLOTS,
-            }
-        }
-    }
-}
-
-impl Words {
-    pub(crate) fn new(language: Language) -> Self {
-        let mut words = Self {
-            map: Table::new(),
-            capitals: BTreeMap::new(),
-            long: BTreeMap::new(),
-            declares: false,
-            language,
-        };
+impl Vocabulary {
+    fn new(language: Language) -> Self {
+        let mut words =
+            Self { map: Table::new(), capitals: BTreeMap::new(), long: BTreeMap::new(), language };
         for (word, spellings) in Language::English.vocabulary().words {
             let Some((_, key)) = KEYS.iter().find(|(name, _)| name == word) else { continue };
             for spelling in *spellings {
-                words.set(spelling, Meaning::Key(*key));
+                words.set(spelling, Tok::Key(*key));
             }
         }
         for (index, number) in NUMBERS.iter().enumerate() {
-            words.set(number, Meaning::Number(index as u32 + 2));
+            words.set(number, Tok::Int(index as u32 + 2));
         }
-        words.set("one", Meaning::Number(1));
+        words.set("one", Tok::Int(1));
         for kind in
             Kind::ALL.iter().copied().filter(|kind| !matches!(kind, Kind::Special | Kind::Ch | Kind::Skip))
         {
             words.english(kind);
         }
         for (spelling, us, uk) in EXTRA {
-            words.set(spelling, Meaning::Stitch(Spelled { us: *us, uk: *uk }));
+            words.set(spelling, Tok::Stitch(Spelled { us: *us, uk: *uk }));
         }
-        let vocabulary = language.vocabulary();
-        let english = |words: &Self, word: &str| words.get(word.as_bytes());
-        let own: Vec<(&str, Meaning)> = vocabulary
+        let table = language.vocabulary();
+        let english = |words: &Self, word: &str| words.of(word);
+        let own: Vec<(&str, Tok)> = table
             .words
             .iter()
             .filter_map(|(word, spellings)| Some((english(&words, word)?, spellings)))
-            .flat_map(|(meaning, spellings)| spellings.iter().map(move |spelling| (*spelling, meaning)))
+            .flat_map(|(tok, spellings)| spellings.iter().map(move |spelling| (*spelling, tok)))
             .collect();
-        for (spelling, meaning) in own {
-            words.own(spelling, meaning);
+        for (spelling, tok) in own {
+            words.own(spelling, tok);
         }
-        for (kind, spellings) in vocabulary.stitches {
-            let meaning = match kind {
-                Kind::Ch => Meaning::Key(Key::Ch),
-                Kind::Skip => Meaning::Key(Key::Sk),
-                _ => Meaning::Stitch(Spelled::plain(*kind)),
+        for (kind, spellings) in table.stitches {
+            let tok = match kind {
+                Kind::Ch => Tok::Key(Key::Ch),
+                Kind::Skip => Tok::Key(Key::Sk),
+                _ => Tok::Stitch(Spelled::plain(*kind)),
             };
             for spelling in *spellings {
-                words.own(spelling, meaning);
+                words.own(spelling, tok);
             }
         }
-        for (letters, kind, works, makes) in vocabulary.shaped {
-            words.capitals.insert(letters, Meaning::Shaped(*kind, *works, *makes));
+        for (letters, kind, works, makes) in table.shaped {
+            words.capitals.insert(letters, Tok::Shaped(*kind, *works, *makes));
         }
         words
     }
 
-    fn own(&mut self, spelling: &'static str, meaning: Meaning) {
+    fn own(&mut self, spelling: &'static str, tok: Tok) {
         if self.language == Language::Letters {
-            self.capitals.insert(spelling, meaning);
+            self.capitals.insert(spelling, tok);
         } else {
-            self.set(&fold_word(spelling), meaning);
+            self.set(&fold_word(spelling), tok);
         }
     }
 
@@ -282,17 +259,63 @@ impl Words {
     fn english(&mut self, kind: Kind) {
         let (us, uk) = (fold_word(kind.us()).replace(' ', ""), fold_word(kind.uk()).replace(' ', ""));
         if us == uk {
-            self.set(&us, Meaning::Stitch(Spelled::plain(kind)));
+            self.set(&us, Tok::Stitch(Spelled::plain(kind)));
             return;
         }
-        let known = |words: &Self, word: &str| match words.get(word.as_bytes()) {
-            Some(Meaning::Stitch(spelled)) => spelled,
+        let known = |words: &Self, word: &str| match words.of(word) {
+            Some(Tok::Stitch(spelled)) => spelled,
             _ => Spelled { us: None, uk: None },
         };
         let spelled = known(self, &us);
-        self.set(&us, Meaning::Stitch(Spelled { us: Some(kind), ..spelled }));
+        self.set(&us, Tok::Stitch(Spelled { us: Some(kind), ..spelled }));
         let spelled = known(self, &uk);
-        self.set(&uk, Meaning::Stitch(Spelled { uk: Some(kind), ..spelled }));
+        self.set(&uk, Tok::Stitch(Spelled { uk: Some(kind), ..spelled }));
+    }
+
+    /// Enters a word; the plural in `s` is found by [`Vocabulary::get`].
+    fn set(&mut self, word: &str, tok: Tok) {
+        match Packed::of(word.as_bytes()) {
+            Some(packed) => self.map.set(&packed, tok.into()),
+            None => {
+                self.long.insert(word.to_owned(), tok);
+            }
+        }
+    }
+
+    /// The meaning of a folded word.
+    #[inline]
+    fn get(&self, word: &Packed) -> Known {
+        match self.map.get(word) {
+            Some(known) => known,
+            None => self.plural(*word).unwrap_or(Known::WORD),
+        }
+    }
+
+    /// `dcs`, `increases`: a plural means what its singular means.
+    #[cold]
+    fn plural(&self, word: Packed) -> Option<Known> {
+        self.singular(word.singular()?)
+    }
+
+    fn singular(&self, word: Packed) -> Option<Known> {
+        self.map.get(&word).filter(|known| matches!(known.tok, Tok::Stitch(_) | Tok::Key(_)))
+    }
+
+    /// The meaning of a short word of the table.
+    fn of(&self, word: &str) -> Option<Tok> {
+        let known = self.get(&Packed::of(word.as_bytes())?).tok;
+        (known != Tok::Word).then_some(known)
+    }
+}
+
+impl Words {
+    pub(crate) fn new(language: Language) -> Self {
+        Self { fixed: vocabulary(language), declared: BTreeMap::new(), language }
+    }
+
+    /// Goes on in another language, with the names declared so far.
+    pub(crate) fn change(&mut self, language: Language) {
+        (self.fixed, self.language) = (vocabulary(language), language);
     }
 
     /// A stitch by its English abbreviation, whatever the language of the file.
@@ -304,50 +327,46 @@ impl Words {
         (us.is_some() || uk.is_some()).then_some(Spelled { us, uk })
     }
 
-    /// Enters a word; the plural in `s` is found by [`Words::get`].
-    pub(crate) fn set(&mut self, word: &str, meaning: Meaning) {
-        match pack(word.as_bytes()) {
-            Some(key) if key != 0 => self.map.set(key, meaning),
-            _ => {
-                self.long.insert(word.to_owned(), meaning);
-            }
-        }
-    }
-
     /// Enters a name that the file declares.
-    pub(crate) fn declare(&mut self, name: &str, meaning: Meaning) {
-        self.long.insert(fold_word(name), meaning);
-        self.declares = true;
-    }
-
-    /// The names that the file declared so far.
-    pub(crate) fn declared(self) -> impl Iterator<Item = (String, Meaning)> {
-        self.long.into_iter().filter(|(_, meaning)| matches!(meaning, Meaning::Color(_) | Meaning::Def(_)))
+    pub(crate) fn declare(&mut self, name: &str, tok: Tok) {
+        self.declared.insert(fold_word(name), tok);
     }
 
     /// The meaning of a folded word.
-    pub(crate) fn get(&self, word: &[u8]) -> Option<Meaning> {
-        if self.declares || word.len() > size_of::<u128>() {
-            let declared = std::str::from_utf8(word).ok().and_then(|word| self.long.get(word));
-            if declared.is_some() {
-                return declared.copied();
-            }
+    #[inline]
+    pub(crate) fn get(&self, word: &Packed) -> Known {
+        if !self.declared.is_empty()
+            && let Some(tok) = self.name(*word)
+        {
+            return tok.into();
         }
-        let found = pack(word).and_then(|key| self.map.get(key));
-        if found.is_some() {
-            return found;
+        self.fixed.get(word)
+    }
+
+    /// A name of the file.
+    #[cold]
+    #[inline(never)]
+    fn name(&self, word: Packed) -> Option<Tok> {
+        let (bytes, length) = word.bytes();
+        self.declared.get(std::str::from_utf8(bytes.get(..length)?).ok()?).copied()
+    }
+
+    /// The meaning of a word of any length and in any letters.
+    pub(crate) fn spelled(&self, written: &str) -> Known {
+        let word = fold_word(written);
+        if let Some(tok) = self.declared.get(&word).or_else(|| self.fixed.long.get(&word)) {
+            return (*tok).into();
         }
-        // `dcs`, `increases`: a plural means what its singular means.
-        let singular = word.strip_suffix(b"s").filter(|singular| singular.len() >= 2)?;
-        match pack(singular).and_then(|key| self.map.get(key)) {
-            Some(meaning @ (Meaning::Stitch(_) | Meaning::Key(_))) => Some(meaning),
-            _ => None,
+        let singular = || self.fixed.singular(Packed::of(word.strip_suffix('s')?.as_bytes())?);
+        match Packed::of(word.as_bytes()) {
+            Some(word) => self.fixed.get(&word),
+            None => singular().unwrap_or(Known::WORD),
         }
     }
 
     /// The meaning of a word in capitals, in a notation where case matters.
-    pub(crate) fn capital(&self, word: &str) -> Option<Meaning> {
-        self.capitals.get(word).copied()
+    pub(crate) fn capital(&self, word: &str) -> Option<Known> {
+        self.fixed.capitals.get(word).map(|tok| (*tok).into())
     }
 
     /// Words for stitches, increases and decreases.

@@ -312,12 +312,12 @@ impl At<'_> {
     }
 
     fn fault(&self, tally: &Tally) -> Option<Diagnostic> {
-        let (name, loops) = (self.name(), self.hook.loops());
+        let loops = self.hook.loops();
         if let Some((fault, span)) = tally.fault {
             return Some(self.within(fault, span, tally));
         }
         if tally.direction == Direction::Back {
-            let message = format!("{name} ends while working back");
+            let message = format!("{} ends while working back", self.name());
             let help = "turn forward again and work over the short row: `18 sc <- -8 sc -> 16 sc`";
             return Some(self.diagnostic(Code::UnbalancedTurn, message, self.row.span).help(help));
         }
@@ -327,19 +327,19 @@ impl At<'_> {
         }
         if !self.hook.fits(tally, self.part.flat) {
             let missing = self.hook.own as i64 - consumed - left;
-            let message = format!("{name} works {consumed} of the {} loops below", self.hook.own);
+            let message = format!("{} works {consumed} of the {} loops below", self.name(), self.hook.own);
             let help = format!("work {missing} more, or say so: `leave last {missing} sts unworked`");
             let diagnostic = self.diagnostic(Code::LoopsLeft, message, self.row.span);
             return Some(self.source(diagnostic).help(help));
         }
         let made = tally.produced();
         if made > i64::from(MAX_ROW) {
-            let message = format!("{name} makes {made} loops, the limit is {MAX_ROW}");
+            let message = format!("{} makes {made} loops, the limit is {MAX_ROW}", self.name());
             return Some(self.diagnostic(Code::TooLarge, message, self.row.span));
         }
         let (stated, span) = self.row.stated?;
         (i64::from(stated) != made).then(|| {
-            let message = format!("{name} states {stated} and makes {made}");
+            let message = format!("{} states {stated} and makes {made}", self.name());
             let help = format!("write ({made}), or change the {} so that it makes {stated}", self.kind());
             self.diagnostic(Code::CountDiffers, message, span).at(self.row.span, "").help(help)
         })
