@@ -1,6 +1,7 @@
 //! Previews: pictures and predicted shapes of tubes of growing size.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use picot::backends::html::MAX_STITCHES;
 use picot::backends::target;
 use picot::diag::{Sink, Sources};
 use picot::frontend::reader;
@@ -29,7 +30,11 @@ fn outputs(criterion: &mut Criterion) {
     for stitches in [4_000, 100_000] {
         let program = tube(stitches);
         let verified = verify(&program, &mut Sink::new()).expect("workable");
-        for name in ["png", "svg", "gltf", "stl"] {
+        for name in ["png", "svg", "gltf", "stl", "html"] {
+            // A page has a limit, below which it stays usable.
+            if name == "html" && u64::from(stitches) > MAX_STITCHES {
+                continue;
+            }
             let backend = target(name).expect("listed").configure(toml::Table::new()).expect("defaults");
             group.bench_with_input(BenchmarkId::new(name, stitches), &(), |bencher, ()| {
                 bencher.iter(|| {

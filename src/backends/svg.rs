@@ -103,7 +103,8 @@ fn suits_a_spiral(part: &Part, facts: &PartFacts) -> bool {
 
 impl Svg {
     /// The whole drawing: the charts of all parts, one below the other, and the legend. In a page of its own it has a
-    /// white ground, inside another it takes that page's color.
+    /// white ground and an id for each sign, inside another it takes that page's color, and signs that follow each other in
+    /// a round have no id.
     pub(super) fn document(self, program: &Verified<'_>, own_page: bool) -> String {
         let many = program.pattern.parts.len() > 1;
         let mut body = String::new();
@@ -125,7 +126,7 @@ impl Svg {
                 Chart::Round => !part.flat,
                 Chart::Rows => false,
             };
-            let mut sheet = Sheet::new(index, true, self.sc_symbol);
+            let mut sheet = Sheet::new(index, own_page, self.sc_symbol);
             if spiral {
                 round::draw(part, &trace, &titles, &mut sheet);
             } else {

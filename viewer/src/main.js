@@ -136,6 +136,19 @@ function light(stitches, pin) {
   stats();
 }
 
+// A sign of the chart without a number stands for the stitch after that of the sign before.
+function numberSigns() {
+  for (const round of document.querySelectorAll("#chart g[id^=p][id*=r]")) {
+    let part;
+    let step;
+    for (const sign of round.querySelectorAll("path")) {
+      const own = /^p(\d+)s(\d+)$/.exec(sign.id);
+      if (own) [part, step] = [own[1], Number(own[2])];
+      else if (part !== undefined) sign.id = `p${part}s${++step}`;
+    }
+  }
+}
+
 function chartSign(id) {
   const round = scene.rounds[scene.round[id]];
   const steps = scene.steps[round.piece];
@@ -208,6 +221,7 @@ function texts() {
       if (state.upto <= stitches[stitches.length - 1]) go(stitches[stitches.length - 1] + 1);
     }
   });
+  numberSigns();
   $("chart").addEventListener("click", (event) => {
     const found = /^p(\d+)s(\d+)$/.exec(event.target.id || "");
     if (!found || !scene) return;

@@ -26,7 +26,9 @@ pub(super) fn write(program: &Verified<'_>, terms: Terms, out: &mut String) {
         }
         if let Some((part, (label, rest))) = ring {
             begin(part, "-1", "round", label, out);
-            let _ = writeln!(out, "{}</li>", Escaped(rest));
+            let (words, count) = rest.rsplit_once(" (").unwrap_or((rest, ""));
+            let count = count.strip_suffix(')').unwrap_or(count);
+            let _ = writeln!(out, "{} <b class=\"count\">({})</b></li>", Escaped(words), Escaped(count));
             continue;
         }
         match line {

@@ -67,7 +67,7 @@ pub(super) fn draw(options: Svg, program: &Verified<'_>, reading: Reading, width
             body,
             "<path fill=\"{fill}\" stroke=\"currentColor\" stroke-width=\"1.25\" stroke-linecap=\"round\" d=\"{}\"/>\
              <text x=\"{}\" y=\"{}\">{}</text>",
-            path.0,
+            path.data(),
             N(x + 40.0),
             N(y + 13.0),
             Escaped(words)

@@ -23,7 +23,9 @@ pub(super) struct Sheet {
     pub(super) low: P,
     pub(super) high: P,
     part: usize,
+    /// Whether each sign has an id, or only those that do not follow the one before.
     ids: bool,
+    last: Option<u32>,
     sc: ScSymbol,
     open: Option<bool>,
 }
@@ -37,6 +39,7 @@ pub(super) enum Anchor {
 }
 
 impl Sheet {
+    /// A sheet for a part; where not all signs have `ids`, the reader counts on from the one before.
     pub(super) fn new(part: usize, ids: bool, sc: ScSymbol) -> Self {
         Self {
             under: String::new(),
@@ -46,6 +49,7 @@ impl Sheet {
             high: P(f64::NEG_INFINITY, f64::NEG_INFINITY),
             part,
             ids,
+            last: None,
             sc,
             open: None,
         }
@@ -61,6 +65,7 @@ impl Sheet {
     pub(super) fn begin_round(&mut self, number: u32, title: &str) {
         let _ = writeln!(self.body, "<g id=\"p{}r{number}\"><title>{}</title>", self.part, Escaped(title));
         self.open = Some(false);
+        self.last = None;
     }
 
     /// Closes it.
@@ -75,7 +80,7 @@ impl Sheet {
     pub(super) fn stitch(&mut self, worked: &Worked, base: &[P], tops: &[P], up: P) {
         let mut path = Path::default();
         let filled = symbols::draw(worked.stitch, self.sc, base, tops, up, UNIT, &mut path);
-        if path.0.is_empty() {
+        if path.is_empty() {
             return;
         }
         if self.open != Some(worked.back) {
@@ -102,13 +107,15 @@ impl Sheet {
 
     fn path(&mut self, tile: Option<u32>, path: &Path, filled: bool) {
         self.body.push_str("<path");
-        if let (Some(tile), true) = (tile, self.ids) {
+        let follows = |tile: u32| self.last.is_some_and(|last| last + 1 == tile);
+        if let Some(tile) = tile.filter(|tile| self.ids || !follows(*tile)) {
             let _ = write!(self.body, " id=\"p{}s{tile}\"", self.part);
         }
+        self.last = tile;
         if filled {
             self.body.push_str(" fill=\"currentColor\"");
         }
-        let _ = writeln!(self.body, " d=\"{}\"/>", path.0);
+        let _ = writeln!(self.body, " d=\"{}\"/>", path.data());
     }
 
     /// Writes a text of `size` with halo, so that it can be read over lines.
@@ -135,7 +142,7 @@ impl Sheet {
     pub(super) fn line(&mut self, from: P, to: P, look: &str) {
         let mut path = Path::default();
         path.line(from, to);
-        let _ = writeln!(self.under, "<path {look} d=\"{}\"/>", path.0);
+        let _ = writeln!(self.under, "<path {look} d=\"{}\"/>", path.data());
     }
 
     /// A box behind the signs.
@@ -162,7 +169,7 @@ impl Sheet {
         let _ = writeln!(
             self.under,
             "<path fill=\"none\" stroke=\"{ACCENT}\" stroke-width=\"1.4\" stroke-linecap=\"round\" d=\"{}\"/>",
-            path.0
+            path.data()
         );
         self.hold(at, UNIT);
     }

@@ -17,11 +17,12 @@ const STEPS: u32 = 500;
 const AT_REST: f64 = 2e-5;
 /// Forces beyond which a shape counts as not at rest.
 const UNREST: f64 = 2e-4;
-/// Steps with one factored stiffness.
-const AGE: u32 = 5;
+/// Steps with one factored stiffness: at most, and at least where it serves badly.
+const AGE: u32 = 30;
+const YOUNG: u32 = 6;
 /// Stiffness that every direction has at least.
 const FREE: f64 = 0.03;
-/// Most entries of the matrix: 480 MB.
+/// Most entries of the matrix: 240 MB.
 const MAX_ENTRIES: u64 = 60_000_000;
 
 /// Lets the loops go to rest.
@@ -39,12 +40,15 @@ pub(super) fn relax(system: &System, x: &mut [DVec3], sink: &Sink<'_>) -> Result
     let mut steps = 0;
     // Steps since the stiffness was looked at.
     let mut age = AGE;
+    // The forces then.
+    let mut before = 0.0;
     while steps < STEPS && rms(&slope) > AT_REST {
         sink.step(u64::from(steps), u64::from(STEPS));
-        if age >= AGE {
+        let force = rms(&slope);
+        if age >= AGE || (age >= YOUNG && force > 0.7 * before) {
             factor(system, x, &mut matrix)?;
             memory.clear();
-            age = 0;
+            (age, before) = (0, force);
         }
         age += 1;
         let mut way = direction(&matrix, &memory, &slope);
@@ -99,8 +103,8 @@ pub(super) fn relax(system: &System, x: &mut [DVec3], sink: &Sink<'_>) -> Result
 fn factor(system: &System, x: &[DVec3], matrix: &mut Envelope) -> Result<(), Refused> {
     matrix.clear();
     system.stiffness(x, matrix);
-    for row in 0..3 * system.count {
-        matrix.add(row, row, FREE);
+    for node in 0..system.count {
+        matrix.add(node, node, [[FREE, 0.0, 0.0], [0.0, FREE, 0.0], [0.0, 0.0, FREE]]);
     }
     if matrix.factor() { Ok(()) } else { Err(Refused::NotPredicted) }
 }
@@ -120,11 +124,7 @@ fn direction(matrix: &Envelope, memory: &VecDeque<Memory>, slope: &[DVec3]) -> V
         add(&mut way, &known.change, -share);
         shares.push(share);
     }
-    let mut flat: Vec<f64> = way.iter().flat_map(DVec3::to_array).collect();
-    matrix.solve(&mut flat);
-    for (way, flat) in way.iter_mut().zip(flat.chunks_exact(3)) {
-        *way = DVec3::from_slice(flat);
-    }
+    matrix.solve(&mut way);
     for (known, share) in memory.iter().zip(shares.iter().rev()) {
         let back = known.inverse * dot(&known.change, &way);
         add(&mut way, &known.step, share - back);

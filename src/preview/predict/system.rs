@@ -208,17 +208,15 @@ impl System {
             let length = way.length().max(1e-9);
             let way = (way / length).to_array();
             let tense = (1.0 - spring.rest / length).max(if spring.side { 0.5 * BENDING } else { 0.0 });
-            for i in 0..3 {
-                for j in 0..3 {
+            let block: [[f64; 3]; 3] = std::array::from_fn(|i| {
+                std::array::from_fn(|j| {
                     let plain = if i == j { tense } else { 0.0 };
-                    let value = spring.stiffness * (plain + (1.0 - tense) * way[i] * way[j]);
-                    if j <= i {
-                        matrix.add(3 * a + i, 3 * a + j, value);
-                        matrix.add(3 * b + i, 3 * b + j, value);
-                    }
-                    matrix.add(3 * a + i, 3 * b + j, -value);
-                }
-            }
+                    spring.stiffness * (plain + (1.0 - tense) * way[i] * way[j])
+                })
+            });
+            matrix.add(a, a, block);
+            matrix.add(b, b, block);
+            matrix.add(a, b, block.map(|line| line.map(|value| -value)));
         }
     }
 
