@@ -176,8 +176,8 @@ impl Row {
 #[derive(Clone, Debug, Default)]
 pub struct Block {
     // Most rows of written and of generated patterns take no more.
-    ops: SmallVec<[Op; 4]>,
-    spans: SmallVec<[Span; 4]>,
+    ops: SmallVec<[Op; 3]>,
+    spans: SmallVec<[Span; 3]>,
 }
 
 impl PartialEq for Block {

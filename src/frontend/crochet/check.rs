@@ -326,10 +326,10 @@ impl Checker<'_> {
 
     fn remember(&mut self, solved: &Solved, state: &mut State) {
         state.chain_counted = solved.lowered.chain_counted;
-        state.spaces = super::solve::spaces(&solved.block);
+        state.spaces = super::solve::spaces(&solved.lowered.block);
         if let Some(kind) = solved.lowered.dominant {
             state.dominant = kind;
-        } else if let Some(kind) = main_kind(&solved.block) {
+        } else if let Some(kind) = main_kind(&solved.lowered.block) {
             state.dominant = kind;
         }
         self.color = solved.lowered.color;
@@ -365,12 +365,12 @@ impl Checker<'_> {
         self.total = self.total.saturating_add((solved.makes.max(0) as u64).saturating_mul(u64::from(times)));
         state.rounds.push(round(&item, Some(&solved), solved.stated));
         state.opens.push((item.first.unwrap_or(0), item.last.unwrap_or(0), leaves));
-        self.holds(&solved.block, id, item.first.unwrap_or(0));
+        self.holds(&solved.lowered.block, id, item.first.unwrap_or(0));
         Self::begin(&solved, state);
         self.remember(&solved, state);
         state.shut |= solved.lowered.shut;
         let chain_only =
-            matches!(solved.lowered.begin, Some(Begin::Chain { .. })) && !makes_loops(&solved.block);
+            matches!(solved.lowered.begin, Some(Begin::Chain { .. })) && !makes_loops(&solved.lowered.block);
         if part.flat {
             let mut own = if solved.lowered.begin.is_some() { solved.have } else { state.have };
             // Rows of a range go back and forth over the same loops.
@@ -386,14 +386,14 @@ impl Checker<'_> {
             return;
         }
         state.below = Below::Loops;
-        if solved.block.is_empty() || (state.rows.is_empty() && ring_of(&solved).is_some()) {
+        if solved.lowered.block.is_empty() || (state.rows.is_empty() && ring_of(&solved).is_some()) {
             return;
         }
         let span = self.document.source.span(item.at.range());
         let stated = solved.stated.filter(|stated| i64::from(*stated) == solved.makes);
         let count_at = row.count.as_ref().map_or(item.at, |count| count.total.at);
         let stated = stated.map(|stated| (stated, self.document.source.span(count_at.range())));
-        state.rows.push(Row { body: solved.block, times, stated, span });
+        state.rows.push(Row { body: solved.lowered.block, times, stated, span });
     }
 
     /// How the part starts, when this row says it.
@@ -470,7 +470,7 @@ pub(super) fn body_at(body: &[Node], or: At) -> At {
 /// The number of single crochets, when a ring holds nothing else.
 fn ring_of(solved: &Solved) -> Option<u32> {
     const PLAIN: Stitch = Stitch { kind: Kind::Sc, works: 0, makes: 1, entry: Entry::Both };
-    match (solved.block.ops(), &solved.lowered.begin) {
+    match (solved.lowered.block.ops(), &solved.lowered.begin) {
         ([Op::Work { stitch, times }], Some(Begin::Ring)) if *stitch == PLAIN => Some(*times),
         _ => None,
     }

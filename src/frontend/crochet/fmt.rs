@@ -2,6 +2,7 @@
 
 use super::Document;
 use super::lex::At;
+use super::lines::Tree;
 use super::syntax::{
     AgainLine, Clause, Content, Count, CountUnit, Counts, Fill, Header, Label, Node, Nodes, Num, Op, Origin,
     Pair, Place, RowKind, RowLine, Shape, Times, Word,
@@ -13,14 +14,14 @@ use std::fmt::Write;
 impl Document<'_> {
     /// The text in canonical form. Formatting it again changes nothing.
     pub fn format(&self) -> String {
-        let printer = Printer { text: self.text, language: self.tree.language, all: &self.tree.nodes };
+        let printer = Printer { text: self.text, tree: &self.tree };
         let mut out = String::with_capacity(self.text.len() + self.text.len() / 8);
         let mut blank = true;
         for line in &self.tree.lines {
             let start = out.len();
             printer.line(line, &mut out);
             if let Some(remark) = line.remark
-                && !matches!(line.what, Content::Broken { .. } | Content::Prose)
+                && !matches!(line.what, Content::Broken(_) | Content::Prose)
             {
                 let said = printer.raw(remark).trim_end();
                 out.push_str(if out.len() > start { "  " } else { "" });
@@ -42,9 +43,7 @@ impl Document<'_> {
 
 struct Printer<'p> {
     text: &'p str,
-    language: Language,
-    /// The clauses of the file.
-    all: &'p [Node],
+    tree: &'p Tree,
 }
 
 impl Printer<'_> {
@@ -63,19 +62,19 @@ impl Printer<'_> {
     }
 
     fn say(&self, english: &'static str) -> &'static str {
-        match (self.language, english) {
+        match (self.tree.language, english) {
             (Language::English, "mr") => "MR",
             (Language::English, "blo") => "BLO",
             (Language::English, "flo") => "FLO",
             (Language::English, "st") => "sts",
-            _ => self.language.say(english),
+            _ => self.tree.language.say(english),
         }
     }
 
     fn line(&self, line: &super::syntax::Line, out: &mut String) {
         match &line.what {
             Content::Blank => {}
-            Content::Comment | Content::Prose | Content::Broken { .. } => {
+            Content::Comment | Content::Prose | Content::Broken(_) => {
                 out.push_str(self.raw(line.at).trim_end());
             }
             Content::Header(header) => self.header(header, out),
@@ -87,7 +86,11 @@ impl Printer<'_> {
                 out.push(':');
                 self.origin(&head.origin, out);
             }
-            Content::Row(row) => self.row(row, out),
+            Content::Row(_) => {
+                if let Some(row) = self.tree.row(&line.what) {
+                    self.row(row, out);
+                }
+            }
             Content::Again(again) => self.again(again, out),
         }
     }
@@ -181,15 +184,15 @@ impl Printer<'_> {
 
     fn label(&self, label: &Label, out: &mut String) {
         let several = label.set.len() > 1 || label.set.iter().any(|(_, to)| to.is_some());
-        let english = matches!(self.language, Language::English);
+        let english = matches!(self.tree.language, Language::English);
         let word = match (label.kind, english, several) {
             (RowKind::Rnd, true, false) => "Rnd ",
             (RowKind::Rnd, true, true) => "Rnds ",
             (RowKind::Row, true, false) => "Row ",
             (RowKind::Row, true, true) => "Rows ",
             (RowKind::R | RowKind::None, ..) => "R",
-            (RowKind::Rnd, false, _) => self.language.say("rnd"),
-            (RowKind::Row, false, _) => self.language.say("row"),
+            (RowKind::Rnd, false, _) => self.tree.language.say("rnd"),
+            (RowKind::Row, false, _) => self.tree.language.say("row"),
         };
         out.push_str(word);
         if !english && !matches!(label.kind, RowKind::R | RowKind::None) {
@@ -207,12 +210,12 @@ impl Printer<'_> {
                 let _ = write!(out, "-{}", to.value);
             }
         }
-        for tag in &label.tags {
+        for tag in label.tags.iter().flat_map(|tags| &tags.others) {
             out.push_str(" (");
             self.folded(*tag, out);
             out.push(')');
         }
-        if let Some(rounds) = label.rounds {
+        if let Some(rounds) = label.tags.as_ref().and_then(|tags| tags.rounds) {
             let word = if label.kind == RowKind::Row { "rows" } else { "rnds" };
             let _ = write!(out, " ({} {word})", rounds.value);
         }
@@ -223,7 +226,7 @@ impl Printer<'_> {
         if let Some(label) = &row.label {
             self.label(label, out);
         }
-        let whole = row.body.of(self.all);
+        let whole = row.body.of(&self.tree.nodes);
         let split =
             row.count.as_ref().and_then(|count| whole.iter().position(|node| node.at.start > count.at.end()));
         let (body, after) = split.and_then(|split| whole.split_at_checked(split)).unwrap_or((whole, &[]));
@@ -272,13 +275,13 @@ impl Printer<'_> {
 
     fn count(&self, count: &Count, out: &mut String) {
         out.push('(');
-        for (index, (n, unit)) in count.units.iter().enumerate() {
+        for (index, (n, unit)) in count.units().enumerate() {
             out.push_str(if index > 0 { ", " } else { "" });
             let _ = write!(out, "{}", n.value);
             match unit {
                 CountUnit::Stitches => {}
                 CountUnit::Kind(spelled) => {
-                    let _ = write!(out, " {}", self.spelled(*spelled));
+                    let _ = write!(out, " {}", self.spelled(spelled));
                 }
                 CountUnit::Chains => out.push_str(" ch"),
                 CountUnit::Spaces => out.push_str(" ch-sp"),
@@ -357,7 +360,7 @@ impl Printer<'_> {
                 self.folded(*name, out);
             }
             Clause::FastenOff => {
-                out.push_str(if self.language == Language::English { "FO" } else { self.say("fo") });
+                out.push_str(if self.tree.language == Language::English { "FO" } else { self.say("fo") });
             }
             Clause::DrawShut => out.push_str("close"),
             Clause::Marker => out.push_str("pm"),
@@ -378,7 +381,7 @@ impl Printer<'_> {
             _ => ('(', ')'),
         };
         out.push(open);
-        self.nodes(body.of(self.all), false, out);
+        self.nodes(body.of(&self.tree.nodes), false, out);
         out.push(close);
         match times {
             Times::Unsaid => {}
@@ -404,7 +407,7 @@ impl Printer<'_> {
             return self.group(b'(', body, times, out);
         }
         out.push('*');
-        self.nodes(body.of(self.all), false, out);
+        self.nodes(body.of(&self.tree.nodes), false, out);
         out.push_str("; rep from * ");
         match times {
             Times::N(n) | Times::Rep(n) => {
@@ -471,7 +474,7 @@ impl Printer<'_> {
 
     fn place(&self, place: Place, out: &mut String) {
         let (to, next, st, each) = (self.say("in"), self.say("next"), self.say("st"), self.say("each"));
-        let one = if self.language == Language::English { "st" } else { st };
+        let one = if self.tree.language == Language::English { "st" } else { st };
         let some = |n: Option<Num>, word: &str| match n {
             Some(n) => format!("{to} {word} {} {st}", n.value),
             None => format!("{to} {word} {one}"),
@@ -550,7 +553,7 @@ impl Printer<'_> {
     }
 
     fn abbreviation(&self, kind: Kind) -> &'static str {
-        self.language.abbreviation(kind, Terms::Us)
+        self.tree.language.abbreviation(kind, Terms::Us)
     }
 
     /// A stitch in the words it was written in.

@@ -117,8 +117,5 @@ pub(crate) fn space(block: &Block) -> Block {
 
 /// What a count of stitches counts, when it names kinds.
 pub(crate) fn stated(count: &Count) -> Option<Num> {
-    match count.units.first() {
-        Some((_, CountUnit::Stitches | CountUnit::Kind(_))) => Some(count.total),
-        _ => None,
-    }
+    matches!(count.unit, CountUnit::Stitches | CountUnit::Kind(_)).then_some(count.total)
 }

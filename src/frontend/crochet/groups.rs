@@ -166,7 +166,7 @@ impl Lower<'_> {
             return Err(two_fills(at));
         }
         self.worked = true;
-        self.out.site = Some(Site { index, body, partial, last, at, spaces: 0, even: None });
+        self.out.site = Some(Box::new(Site { index, body, partial, last, at, spaces: 0, even: None }));
         Ok(())
     }
 

@@ -387,9 +387,9 @@ impl Lexer<'_> {
             '＊' => self.key(Key::Star, length),
             '＝' => self.key(Key::Eq, length),
             '＋' => self.key(Key::Plus, length),
-            '\u{ff10}'..='\u{ff19}' => self.number(),
+            '\u{ff10}'..='\u{ff19}' => self.long_number(),
             _ if c.is_whitespace() => self.at += length,
-            _ if is_letter(c) => self.word(),
+            _ if is_letter(c) => self.any_word(),
             _ => self.key(Key::Other, length),
         }
         Ok(())

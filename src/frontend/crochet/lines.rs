@@ -5,7 +5,7 @@ use super::lex::{self, At, Tok, Token};
 use super::packed::Packed;
 use super::parse::{Context, Fault, FaultKind, Tokens};
 use super::row;
-use super::syntax::{Clause, Content, Header, Line, Node, Nodes, Num, Pair};
+use super::syntax::{Clause, Content, Header, Line, Node, Nodes, Num, Pair, RowLine, Stump};
 use super::terms::Evidence;
 use super::words::{Words, fold_word};
 use crate::ir::Language;
@@ -13,6 +13,16 @@ use std::cell::{Cell, RefCell};
 
 /// Longest line that is read, in bytes.
 pub(crate) const MAX_LINE: usize = 1 << 20;
+
+impl Tree {
+    /// The row of a line that is one.
+    pub(crate) fn row(&self, content: &Content) -> Option<&RowLine> {
+        match content {
+            Content::Row(row) => self.rows.get(*row as usize),
+            _ => None,
+        }
+    }
+}
 
 /// A fault of a line, before it becomes a diagnostic.
 #[derive(Debug)]
@@ -30,6 +40,7 @@ pub(crate) enum LineFault {
 /// A file in lines, with the names that it declares.
 pub(crate) struct Tree {
     pub lines: Vec<Line>,
+    pub rows: Vec<RowLine>,
     /// The clauses of all rows.
     pub nodes: Vec<Node>,
     pub faults: Vec<LineFault>,
@@ -63,6 +74,7 @@ struct Room {
 pub(crate) fn parse(text: &str, language: Language) -> (Tree, Words) {
     let mut tree = Tree {
         lines: Vec::new(),
+        rows: Vec::new(),
         nodes: Vec::new(),
         faults: Vec::new(),
         language,
@@ -73,11 +85,16 @@ pub(crate) fn parse(text: &str, language: Language) -> (Tree, Words) {
     };
     let mut words = Words::new(language);
     let mut room = Room::default();
+    // About what patterns need. Room that stays unused is never touched.
+    let ends = text.bytes().filter(|byte| *byte == b'\n').count();
+    tree.lines.reserve_exact(ends + 1);
+    tree.rows.reserve_exact(ends.min(text.len() / 16) + 1);
+    room.nodes.get_mut().reserve_exact(text.len() / 16);
     for (start, end) in lines(text) {
         let at = At::new(start, end);
         if end - start > MAX_LINE {
             tree.faults.push(LineFault::Long(At::new(start, start)));
-            tree.lines.push(Line { at, what: Content::Broken { label: None, count: None }, remark: None });
+            tree.lines.push(Line { at, what: Content::Broken(None), remark: None });
             continue;
         }
         let raw = text.get(start..end).unwrap_or_default();
@@ -157,7 +174,10 @@ fn is_round(raw: &str) -> bool {
     let Some((word, length)) = Packed::letters(bytes) else { return false };
     let rest = bytes.get(length..).unwrap_or_default();
     let rest = rest.strip_prefix(b".").unwrap_or(rest).trim_ascii_start();
-    rest.first().is_some_and(u8::is_ascii_digit) && word.is_one_of(&["", "r", "rnd", "row", "round"])
+    rest.first().is_some_and(u8::is_ascii_digit)
+        && [b"rnd".as_slice(), b"rnds", b"r", b"", b"row", b"rows", b"round", b"rounds"]
+            .into_iter()
+            .any(|known| Packed::of(known) == Some(word))
 }
 
 fn is_comment(raw: &str) -> bool {
@@ -308,7 +328,7 @@ fn def(
         }
         _ => {
             tree.faults.push(LineFault::Header { at: trim(raw, base), what: "`def NAME = WORKS -> MAKES`" });
-            Some(Content::Broken { label: None, count: None })
+            Some(Content::Broken(None))
         }
     }
 }
@@ -330,7 +350,7 @@ fn line(text: &str, start: usize, end: usize, words: &Words, room: &mut Room, tr
         Ok(seen) => seen,
         Err(at) => {
             tree.faults.push(LineFault::Character(at));
-            return Content::Broken { label: None, count: None };
+            return Content::Broken(None);
         }
     };
     let fault = Fault { done: 0, kind: FaultKind::Expected("an instruction") };
@@ -367,16 +387,16 @@ fn line(text: &str, start: usize, end: usize, words: &Words, room: &mut Room, tr
         (rest, head) = row::head(input);
     }
     match row::row(rest, head) {
-        Ok((_, content)) => {
-            if let Content::Row(row) = &content {
-                let nodes = nodes.borrow();
-                if tree.evidence.wants(seen) {
-                    tree.evidence.nodes(row.body, &nodes);
-                }
-                tree.holds |= seen.has(Hints::HOLD) && holds(row.body, &nodes);
+        Ok((_, row::Labeled::Row(row))) => {
+            let nodes = nodes.borrow();
+            if tree.evidence.wants(seen) {
+                tree.evidence.nodes(row.body, &nodes);
             }
-            content
+            tree.holds |= seen.has(Hints::HOLD) && holds(row.body, &nodes);
+            tree.rows.push(row);
+            Content::Row(tree.rows.len() as u32 - 1)
         }
+        Ok((_, row::Labeled::Again(again))) => Content::Again(again),
         Err(_) => broken(input, start, end, tree),
     }
 }
@@ -394,7 +414,7 @@ fn broken(input: Tokens<'_>, start: usize, end: usize, tree: &mut Tree) -> Conte
     let token = word.or(input.rest().get(fault.done)).map(|token| (token.tok, token.at));
     tree.faults.push(LineFault::Syntax { kind: fault.kind, token, line });
     let (label, count) = row::frame(input);
-    Content::Broken { label: label.map(Box::new), count: count.map(Box::new) }
+    Content::Broken(label.map(|label| Box::new(Stump { label, count })))
 }
 
 /// The name of a part, folded so that spelling differences do not matter.

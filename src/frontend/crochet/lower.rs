@@ -109,7 +109,7 @@ pub(crate) struct Site {
 #[expect(clippy::struct_excessive_bools, reason = "independent facts of a row")]
 pub(crate) struct Lowered {
     pub block: Block,
-    pub site: Option<Site>,
+    pub site: Option<Box<Site>>,
     pub begin: Option<Begin>,
     /// Chains of the foundation that are worked into, both sides counted.
     pub usable: Option<u32>,
@@ -279,8 +279,6 @@ impl<'l> Lower<'l> {
         for (index, node) in body.iter().enumerate() {
             let leading = first.is_none_or(|first| index < first);
             let trailing = last.is_none_or(|last| index > last);
-            let next =
-                body.iter().skip(index + 1).map(|node| &node.what).find(|what| !matches!(what, Clause::Turn));
             match &node.what {
                 Clause::Turn => {
                     if !leading && !trailing {
@@ -296,7 +294,11 @@ impl<'l> Lower<'l> {
                     let fill = out.split_off(from);
                     self.site(from, fill, None, None, node.at)?;
                 }
-                Clause::Chain { n, counts } => self.chain(*n, *counts, node, leading, trailing, next, out)?,
+                Clause::Chain { n, counts } => {
+                    let behind = body.iter().skip(index + 1).map(|node| &node.what);
+                    let next = behind.into_iter().find(|what| !matches!(what, Clause::Turn));
+                    self.chain(*n, *counts, node, leading, trailing, next, out)?;
+                }
                 Clause::Op(op)
                     if Some(index) == last
                         && index > 0

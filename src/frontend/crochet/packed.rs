@@ -67,12 +67,6 @@ impl Packed {
         (whole.to_le_bytes(), self.len() as usize)
     }
 
-    /// True for one of these words, or its plural.
-    pub(crate) fn is_one_of(self, words: &[&str]) -> bool {
-        let one = |packed: Self| words.iter().any(|word| Self::of(word.as_bytes()) == Some(packed));
-        one(self) || self.singular().is_some_and(one)
-    }
-
     /// Number of bytes.
     fn len(self) -> u32 {
         16 - if self.high == 0 { 8 + self.low.leading_zeros() / 8 } else { self.high.leading_zeros() / 8 }

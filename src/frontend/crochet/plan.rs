@@ -3,7 +3,7 @@
 use super::gather::is_work;
 use super::lex::At;
 use super::lines::{Tree, fold_name};
-use super::syntax::{AgainLine, Clause, Content, Label, Node, Num, Origin, PartHead, RowKind, RowLine};
+use super::syntax::{AgainLine, Clause, Content, Label, Line, Node, Num, Origin, PartHead, RowKind, RowLine};
 use crate::diag::{Code, Diagnostic, Source};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -111,7 +111,8 @@ pub(crate) fn parts<'t>(
                 parts.push(Part::new(name, Some(head), line.at));
                 continue;
             }
-            Content::Row(row) => {
+            Content::Row(_) => {
+                let Some(row) = tree.row(&line.what) else { continue };
                 let begins = row.label.as_ref().is_some_and(|label| label.first() == 1);
                 let again =
                     || parts.last().is_some_and(|part| part.items.iter().any(|item| item.first.is_some()));
@@ -135,7 +136,7 @@ pub(crate) fn parts<'t>(
                     parts.push(Part::new(name, None, line.at));
                 }
             }
-            Content::Again(_) | Content::Broken { label: Some(_), .. } => {}
+            Content::Again(_) | Content::Broken(Some(_)) => {}
             _ => continue,
         }
         if parts.is_empty() {
@@ -144,7 +145,7 @@ pub(crate) fn parts<'t>(
             parts.push(Part::new(name, None, line.at));
         }
         let Some(part) = parts.last_mut() else { continue };
-        add(part, line.at, &line.what, source, &mut room, found);
+        add(part, line, tree, source, &mut room, found);
     }
     for part in &mut parts {
         order(part, source, found);
@@ -177,32 +178,30 @@ fn starts(row: &RowLine, all: &[Node]) -> bool {
 
 fn add<'t>(
     part: &mut Part<'t>,
-    at: At,
-    content: &'t Content,
+    line: &'t Line,
+    tree: &'t Tree,
     source: &Source,
     room: &mut usize,
     found: &mut Vec<Diagnostic>,
 ) {
-    match content {
-        Content::Row(row) => match &row.label {
-            Some(label) => {
-                check_range(label, &part.name, source, found);
-                for (first, last) in spans(&label.set) {
-                    let item = Item {
-                        first: Some(first),
-                        last: Some(last),
-                        what: What::Row(row),
-                        label: Some(label),
-                        at,
-                    };
-                    part.items.push(item);
-                }
+    let at = line.at;
+    match &line.what {
+        Content::Row(_) => {
+            let Some(row) = tree.row(&line.what) else { return };
+            let what = What::Row(row);
+            let Some(label) = &row.label else {
+                part.items.push(Item { first: None, last: None, what, label: None, at });
+                return;
+            };
+            check_range(label, &part.name, source, found);
+            for (first, last) in spans(&label.set) {
+                part.items.push(Item { first: Some(first), last: Some(last), what, label: Some(label), at });
             }
-            None => part.items.push(Item { first: None, last: None, what: What::Row(row), label: None, at }),
-        },
+        }
         Content::Again(again) => repeat(part, at, again, source, room, found),
-        Content::Broken { label: Some(label), count } => {
-            let what = What::Broken(count.as_deref().and_then(super::gather::stated).map(|n| n.value));
+        Content::Broken(Some(stump)) => {
+            let label = &stump.label;
+            let what = What::Broken(stump.count.as_ref().and_then(super::gather::stated).map(|n| n.value));
             for (first, last) in spans(&label.set) {
                 part.items.push(Item { first: Some(first), last: Some(last), what, label: Some(label), at });
             }
@@ -230,7 +229,7 @@ fn check_range(label: &Label, part: &str, source: &Source, found: &mut Vec<Diagn
         before = Some(end);
     }
     let rows = numbered(&label.set);
-    if let Some(said) = label.rounds
+    if let Some(said) = label.tags.as_ref().and_then(|tags| tags.rounds)
         && u64::from(said.value) != rows
     {
         let message = format!("{rows} rounds are listed, {} stated", said.value);

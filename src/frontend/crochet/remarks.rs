@@ -43,9 +43,10 @@ impl Checker<'_> {
                 "",
             );
         }
-        if super::effect::has_turn(&solved.block) && self.conventions.is(Setting::TurnMark, "bridge") {
+        if super::effect::has_turn(&solved.lowered.block) && self.conventions.is(Setting::TurnMark, "bridge")
+        {
             let mut direction = ir::Direction::Forward;
-            let tight = super::effect::of(&solved.block, &mut direction, true).is_ok_and(|effect| {
+            let tight = super::effect::of(&solved.lowered.block, &mut direction, true).is_ok_and(|effect| {
                 effect.need_behind > 0 || solved.have.is_some_and(|have| effect.need_ahead > have)
             });
             if tight {

@@ -5,8 +5,8 @@ use super::lex::Tok;
 use super::parse::{Context, FaultKind, Res, Tokens, any_key, int, key, name};
 use super::place::multiplier;
 use super::syntax::{
-    AgainLine, Amounts, Clause, Content, Count, CountUnit, Label, Node, Nodes, Num, Numbers, Origin,
-    PartHead, Piece, RowKind, RowLine, Sep, Spot, Times,
+    AgainLine, Clause, Count, CountUnit, Label, Node, Nodes, Num, Numbers, Origin, PartHead, Piece, RowKind,
+    RowLine, Sep, Spot, Times,
 };
 use super::words::Key;
 use nom::Parser;
@@ -42,14 +42,20 @@ impl Head {
     }
 }
 
+/// What the label of a row may stand before.
+pub(crate) enum Labeled {
+    Row(RowLine),
+    Again(Box<AgainLine>),
+}
+
 /// A row behind its head, with its count; the whole line must be read.
-pub(crate) fn row(input: Tokens<'_>, head: Head) -> Res<'_, Content> {
+pub(crate) fn row(input: Tokens<'_>, head: Head) -> Res<'_, Labeled> {
     let Head { label, table } = head;
     if label.is_some()
         && input.key(0) == Some(Key::Rep)
         && let Ok((rest, again)) = again(input, label.clone())
     {
-        return Ok((rest, Content::Again(Box::new(again))));
+        return Ok((rest, Labeled::Again(Box::new(again))));
     }
     if input.is_empty() {
         return input.fail("an instruction");
@@ -66,7 +72,7 @@ pub(crate) fn row(input: Tokens<'_>, head: Head) -> Res<'_, Content> {
     if !rest.is_empty() {
         return leftover(rest);
     }
-    Ok((rest, Content::Row(Box::new(line))))
+    Ok((rest, Labeled::Row(line)))
 }
 
 /// The label and the count of a line whose body cannot be read.
@@ -107,13 +113,13 @@ fn bullet(input: Tokens<'_>) -> (Tokens<'_>, bool) {
 }
 
 fn row_kind(input: Tokens<'_>) -> Res<'_, RowKind> {
-    let (rest, kind) = any_key(&[Key::Rnd, Key::Row, Key::R])(input)?;
-    let kind = match kind {
-        Key::Rnd => RowKind::Rnd,
-        Key::Row => RowKind::Row,
-        _ => RowKind::R,
+    let kind = match input.key(0) {
+        Some(Key::Rnd) => RowKind::Rnd,
+        Some(Key::Row) => RowKind::Row,
+        Some(Key::R) => RowKind::R,
+        _ => return Err(nom::Err::Error(())),
     };
-    Ok((rest, kind))
+    Ok((input.skip(1), kind))
 }
 
 fn row_number(input: Tokens<'_>) -> Res<'_, Num> {
@@ -170,6 +176,15 @@ fn row_set(input: Tokens<'_>) -> Res<'_, Numbers> {
 
 /// `Rnds 7-12 (6 rnds):`.
 pub(crate) fn label(input: Tokens<'_>, table: bool) -> Res<'_, Label> {
+    // `Rnd 7:`, as most labels are.
+    if let (Ok((rest, kind)), Some(Key::Colon)) = (row_kind(input), input.key(2))
+        && let Some(Tok::Int(_)) = rest.tok(0)
+    {
+        let (rest, number) = int(rest)?;
+        let at = input.at(0).to(number.at);
+        let label = Label { kind, set: smallvec![(number, None)], tags: None, at };
+        return Ok((rest.skip(1), label));
+    }
     let (rest, before) = opt(row_kind).parse(input)?;
     let (rest, _) = if before.is_some() { opt(key(Key::Dot)).parse(rest)? } else { (rest, None) };
     let (rest, set) = row_set(rest)?;
@@ -182,18 +197,19 @@ pub(crate) fn label(input: Tokens<'_>, table: bool) -> Res<'_, Label> {
             rest = rest.skip(1);
         }
     }
-    let mut label =
-        Label { kind: kind.unwrap_or(RowKind::None), set, rounds: None, tags: Vec::new(), at: input.at(0) };
+    let mut label = Label { kind: kind.unwrap_or(RowKind::None), set, tags: None, at: input.at(0) };
     while let Some(Key::Open(brace)) = rest.key(0) {
         let inside = rest.skip(1);
         let close = inside.rest().iter().position(|token| token.tok == Tok::Key(Key::Close(brace)));
         let Some(length) = close else { break };
         match (length, inside.tok(0), inside.key(1)) {
             (2, Some(Tok::Int(value)), Some(Key::Rnd | Key::Row | Key::R)) => {
-                label.rounds = Some(Num { value, at: inside.at(0) });
+                label.tags.get_or_insert_default().rounds = Some(Num { value, at: inside.at(0) });
             }
             (0, ..) | (_, Some(Tok::Stitch(_)), _) => return Err(nom::Err::Error(())),
-            (1..=4, ..) => label.tags.push(inside.until(inside.skip(length))),
+            (1..=4, ..) => {
+                label.tags.get_or_insert_default().others.push(inside.until(inside.skip(length)));
+            }
             _ => return Err(nom::Err::Error(())),
         }
         rest = inside.skip(length + 1);
@@ -264,23 +280,28 @@ fn amount(input: Tokens<'_>) -> Res<'_, (Num, CountUnit)> {
 
 /// The count of a row.
 pub(crate) fn count(input: Tokens<'_>, table: bool) -> Res<'_, Count> {
-    let mut units = Amounts::new();
     match input.key(0) {
+        Some(Key::Open(brace))
+            if matches!(input.tok(1), Some(Tok::Int(_))) && input.key(2) == Some(Key::Close(brace)) =>
+        {
+            let (_, total) = int(input.skip(1))?;
+            let at = input.at(0).to(input.at(2));
+            Ok((input.skip(3), Count { total, unit: CountUnit::Stitches, others: Box::default(), at }))
+        }
         Some(Key::Open(brace)) => {
             let (mut rest, first) = amount(input.skip(1))?;
-            units.push(first);
+            let mut others = Vec::new();
             while matches!(rest.key(0), Some(Key::Comma | Key::Semi | Key::And | Key::Slash)) {
                 let (after, next) = amount(rest.skip(1))?;
-                units.push(next);
+                others.push(next);
                 rest = after;
             }
             let (rest, _) = key(Key::Close(brace))(rest)?;
-            finish(input, rest, units)
+            let (total, unit) = first;
+            Ok((rest, Count { total, unit, others: others.into(), at: input.until(rest) }))
         }
         Some(Key::Eq | Key::FatArrow | Key::Fwd | Key::Dash | Key::Colon) => {
-            let (rest, first) = amount(input.skip(1))?;
-            units.push(first);
-            finish(input, rest, units)
+            amount(input.skip(1)).map(|(rest, first)| finish(input, rest, first))
         }
         Some(Key::Comma | Key::Semi | Key::Dot | Key::Middot) => {
             let rest = input.skip(1);
@@ -291,15 +312,10 @@ pub(crate) fn count(input: Tokens<'_>, table: bool) -> Res<'_, Count> {
             if after.done == rest.done + 1 || matches!(first.1, CountUnit::Kind(_)) {
                 return input.fail("`st` after the count");
             }
-            units.push(first);
-            finish(input, after, units)
+            Ok(finish(input, after, first))
         }
         Some(Key::You) => said(input, input),
-        _ if table => {
-            let (rest, first) = amount(input)?;
-            units.push(first);
-            finish(input, rest, units)
-        }
+        _ if table => amount(input).map(|(rest, first)| finish(input, rest, first)),
         _ => input.fail("a count"),
     }
 }
@@ -308,12 +324,12 @@ pub(crate) fn count(input: Tokens<'_>, table: bool) -> Res<'_, Count> {
 fn said<'t>(start: Tokens<'t>, input: Tokens<'t>) -> Res<'t, Count> {
     let lead = (key(Key::You), opt(key(Key::Will)), opt(key(Key::Have)), opt(key(Key::Total)));
     let (rest, first) = preceded(lead, amount).parse(input)?;
-    finish(start, rest, smallvec![first])
+    Ok(finish(start, rest, first))
 }
 
-fn finish<'t>(from: Tokens<'t>, rest: Tokens<'t>, units: Amounts) -> Res<'t, Count> {
-    let Some((total, _)) = units.first().copied() else { return from.fail("a count") };
-    Ok((rest, Count { total, units, at: from.until(rest) }))
+/// A count of one amount.
+fn finish<'t>(from: Tokens<'t>, rest: Tokens<'t>, (total, unit): (Num, CountUnit)) -> (Tokens<'t>, Count) {
+    (rest, Count { total, unit, others: Box::default(), at: from.until(rest) })
 }
 
 /// True when a count follows and the line ends behind it.

@@ -12,8 +12,8 @@ use crate::ir::{Block, Direction, Kind, MAX_ROW, Op, Stitch};
 /// A row whose operations are complete.
 #[derive(Clone, Debug)]
 pub(crate) struct Solved {
+    /// The row with its operations.
     pub lowered: Lowered,
-    pub block: Block,
     /// Loops below that are used up; held ones are, left ones are not.
     pub works: i64,
     /// Loops that the row leaves made.
@@ -23,7 +23,7 @@ pub(crate) struct Solved {
     /// Loops below, where they are known.
     pub have: Option<i64>,
     /// What is wrong, if anything.
-    pub fault: Option<Trouble>,
+    pub fault: Option<Box<Trouble>>,
 }
 
 impl Solved {
@@ -95,7 +95,7 @@ impl Job<'_> {
             .map(|(index, _)| index)
             .collect();
         let same = |a: usize, b: usize| match (readings.get(a), readings.get(b)) {
-            (Some((_, a)), Some((_, b))) => a.block == b.block,
+            (Some((_, a)), Some((_, b))) => a.lowered.block == b.lowered.block,
             _ => false,
         };
         let one = match fitting.as_slice() {
@@ -152,7 +152,9 @@ impl Job<'_> {
                     && self.have.is_some()
                     && vouched
                 {
-                    several |= fitting.as_ref().is_some_and(|(found, ..)| found.block != other.block);
+                    several |= fitting
+                        .as_ref()
+                        .is_some_and(|(found, ..)| found.lowered.block != other.lowered.block);
                     fitting.get_or_insert((other, *setting, value));
                 }
             }
@@ -183,24 +185,23 @@ impl Job<'_> {
         if conventions.is(Setting::ImplicitRepeat, "fill") {
             implicit(&mut lowered, have);
         }
-        let mut block = std::mem::take(&mut lowered.block);
         let nothing = self.place.below == Below::Nothing && lowered.begin.is_none();
         if let (Some(site), true) = (&lowered.site, nothing) {
             return Err(no_foundation(site.at));
         }
         if let Some(site) = &mut lowered.site {
             let (body, partial) = (std::mem::take(&mut site.body), site.partial.take());
-            let site = Site { body, partial, ..*site };
+            let site = Site { body, partial, ..**site };
             let spaces = (lowered.spaces, self.place.spaces);
-            super::close::close(&mut block, site, have, spaces, stated_count)?;
+            super::close::close(&mut lowered.block, site, have, spaces, stated_count)?;
         }
         let mut direction = Direction::Forward;
-        let effect =
-            effect::of(&block, &mut direction, false).map_err(|fault| self.loop_fault(fault, &block))?;
+        let effect = effect::of(&lowered.block, &mut direction, false)
+            .map_err(|fault| self.loop_fault(fault, &lowered.block))?;
         if direction == Direction::Back {
             return Err(Trouble::new(
                 Code::UnbalancedTurn,
-                self.last_turn(&block),
+                self.last_turn(&lowered.block),
                 "this back pass never turns forward",
             )
             .help("close the short row with `->`, and work on to the end of the round"));
@@ -212,10 +213,9 @@ impl Job<'_> {
             stated: stated_count,
             have,
             fault: None,
-            block,
             lowered,
         };
-        solved.fault = self.judge(&mut solved, effect, conventions);
+        solved.fault = self.judge(&mut solved, effect, conventions).map(Box::new);
         Ok(solved)
     }
 
@@ -256,7 +256,7 @@ impl Job<'_> {
         if effect.need_behind > 0 {
             let message = "the back pass is longer than what lies behind it";
             return Some(
-                Trouble::new(Code::BackPassTooLong, self.first_turn(&solved.block), message)
+                Trouble::new(Code::BackPassTooLong, self.first_turn(&solved.lowered.block), message)
                     .help(format!("shorten it by {}", effect.need_behind)),
             );
         }
@@ -264,7 +264,7 @@ impl Job<'_> {
         if solved.lowered.leave_rest && solved.works < have {
             let loops = (have - solved.works).min(i64::from(u32::MAX)) as u32;
             solved.left = i64::from(loops);
-            solved.block.push(Op::Leave { loops }, self.file.source.span(self.at.range()));
+            solved.lowered.block.push(Op::Leave { loops }, self.file.source.span(self.at.range()));
         }
         let used = solved.works + solved.left;
         // Behind the loops of the row below a flat row may find others, and need not work them.
@@ -281,17 +281,17 @@ impl Job<'_> {
             // What lies between the spaces is passed over.
             let loops = (have - used).min(i64::from(u32::MAX)) as u32;
             let skip = Op::Work { stitch: Stitch::plain(Kind::Skip), times: loops };
-            let tail = solved.block.ops().iter().rev().take_while(|op| ends(op)).count();
-            let after = solved.block.split_off(solved.block.ops().len() - tail);
-            solved.block.push(skip, self.file.source.span(self.at.range()));
-            solved.block.append(after);
+            let tail = solved.lowered.block.ops().iter().rev().take_while(|op| ends(op)).count();
+            let after = solved.lowered.block.split_off(solved.lowered.block.ops().len() - tail);
+            solved.lowered.block.push(skip, self.file.source.span(self.at.range()));
+            solved.lowered.block.append(after);
             solved.works += i64::from(loops);
         } else if !fits && used < have {
             let turned = solved.lowered.ends_in_turn && conventions.is(Setting::Unworked, "turn");
             if turned || conventions.is(Setting::Unworked, "any") {
                 let loops = (have - used).min(i64::from(u32::MAX)) as u32;
                 solved.left += i64::from(loops);
-                solved.block.push(Op::Leave { loops }, self.file.source.span(self.at.range()));
+                solved.lowered.block.push(Op::Leave { loops }, self.file.source.span(self.at.range()));
             } else {
                 let code = if solved.lowered.usable.is_some() { Code::ChainLength } else { Code::LoopsLeft };
                 let message = format!("works {} of the {have} loops below", solved.works);
@@ -309,7 +309,7 @@ impl Job<'_> {
 
     fn over(&self, solved: &Solved, used: i64, need: i64, (have, most): (i64, i64)) -> Trouble {
         let code = if solved.lowered.usable.is_some() { Code::ChainLength } else { Code::LoopsExhausted };
-        if effect::has_turn(&solved.block) && used <= have {
+        if effect::has_turn(&solved.lowered.block) && used <= have {
             let message = format!("runs out of loops: the {have} below do not reach to the turn");
             return Trouble::new(Code::LoopsExhausted, self.at, message)
                 .help(format!("{need} loops are needed before the turn"));
@@ -338,19 +338,18 @@ impl Job<'_> {
             };
             return Some(Trouble::new(code, at, message).help(help));
         }
-        let units = self.count.map_or(&[][..], |count| &count.units);
-        let single = units.len() <= 1;
-        for (n, unit) in units {
+        let single = self.count.is_none_or(|count| count.others.is_empty());
+        for (n, unit) in self.count.iter().flat_map(|count| count.units()) {
             let made = match unit {
                 CountUnit::Kind(spelled) => {
                     let kind = if self.file.terms == crate::ir::Terms::Us { spelled.us } else { spelled.uk };
                     let Some(kind) = kind else { continue };
-                    if single && solved.lowered.begin.is_none() && !mixes(&solved.block) {
+                    if single && solved.lowered.begin.is_none() && !mixes(&solved.lowered.block) {
                         continue;
                     }
-                    made(&solved.block, &|stitch| stitch == kind)
+                    made(&solved.lowered.block, &|stitch| stitch == kind)
                 }
-                CountUnit::Chains => made_chains(&solved.block),
+                CountUnit::Chains => made_chains(&solved.lowered.block),
                 CountUnit::Stitches | CountUnit::Spaces | CountUnit::Rounds => continue,
             };
             if made != u64::from(n.value) {
@@ -364,10 +363,10 @@ impl Job<'_> {
     /// Loops that the stated count refers to.
     fn counted(&self, solved: &Solved) -> i64 {
         let Some(count) = self.count else { return solved.makes };
-        match count.units.first() {
-            Some((_, CountUnit::Kind(spelled))) if count.units.len() > 1 || mixes(&solved.block) => {
+        match count.unit {
+            CountUnit::Kind(spelled) if !count.others.is_empty() || mixes(&solved.lowered.block) => {
                 let kind = if self.file.terms == crate::ir::Terms::Us { spelled.us } else { spelled.uk };
-                kind.map_or(solved.makes, |kind| made(&solved.block, &|stitch| stitch == kind) as i64)
+                kind.map_or(solved.makes, |kind| made(&solved.lowered.block, &|stitch| stitch == kind) as i64)
             }
             _ => solved.makes,
         }
@@ -460,7 +459,8 @@ fn implicit(lowered: &mut Lowered, have: Option<i64>) {
     {
         let body = std::mem::take(&mut lowered.block);
         let at = lowered.first_work.unwrap_or_default();
-        lowered.site = Some(Site { index: 0, body, partial: None, last: None, at, spaces: 0, even: None });
+        let site = Site { index: 0, body, partial: None, last: None, at, spaces: 0, even: None };
+        lowered.site = Some(Box::new(site));
     }
 }
 

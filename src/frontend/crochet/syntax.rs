@@ -32,13 +32,18 @@ pub(crate) enum Content {
     Prose,
     Header(Box<Header>),
     Part(Box<PartHead>),
-    Row(Box<RowLine>),
+    /// An instruction, by its place among the rows of the file.
+    Row(u32),
     Again(Box<AgainLine>),
-    /// A line that could not be read; its finding has been reported. `label` tells which row it was meant to be.
-    Broken {
-        label: Option<Box<Label>>,
-        count: Option<Box<Count>>,
-    },
+    /// A line that could not be read; its finding has been reported. What is left tells which row it was meant to be.
+    Broken(Option<Box<Stump>>),
+}
+
+/// What is left of a row that could not be read.
+#[derive(Debug)]
+pub(crate) struct Stump {
+    pub label: Label,
+    pub count: Option<Count>,
 }
 
 /// A declaration.
@@ -127,8 +132,6 @@ pub(crate) enum RowKind {
 
 /// Row numbers: single ones and ranges.
 pub(crate) type Numbers = SmallVec<[(Num, Option<Num>); 1]>;
-/// Amounts with what they count.
-pub(crate) type Amounts = SmallVec<[(Num, CountUnit); 1]>;
 
 /// `Rnds 7-12 (6 rnds):`.
 #[derive(Clone, Debug)]
@@ -136,11 +139,17 @@ pub(crate) struct Label {
     pub kind: RowKind,
     /// Single numbers and ranges.
     pub set: Numbers,
+    /// What stands in brackets behind the numbers, if anything.
+    pub tags: Option<Box<Tags>>,
+    pub at: At,
+}
+
+/// What stands in brackets behind the numbers of a label.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Tags {
     /// `(6 rnds)`.
     pub rounds: Option<Num>,
-    /// Other tags in brackets.
-    pub tags: Vec<At>,
-    pub at: At,
+    pub others: Vec<At>,
 }
 
 impl Label {
@@ -154,9 +163,17 @@ impl Label {
 #[derive(Clone, Debug)]
 pub(crate) struct Count {
     pub total: Num,
-    /// Further amounts with their unit: `6 dc, 2 ch-sp`.
-    pub units: Amounts,
+    pub unit: CountUnit,
+    /// Further amounts with their unit: `6 dc, 2 ch-sp`; hardly ever any.
+    pub others: Box<[(Num, CountUnit)]>,
     pub at: At,
+}
+
+impl Count {
+    /// All amounts with what they count.
+    pub(crate) fn units(&self) -> impl Iterator<Item = (Num, CountUnit)> {
+        std::iter::once((self.total, self.unit)).chain(self.others.iter().copied())
+    }
 }
 
 /// What an amount counts.

@@ -25,7 +25,7 @@ impl Checker<'_> {
     ) -> Option<i64> {
         let item = part.items.get(index)?;
         let trouble = match outcome {
-            Ok(solved) => solved.fault.as_ref()?,
+            Ok(solved) => solved.fault.as_deref()?,
             Err(trouble) => trouble,
         };
         let stated = job.count.and_then(super::gather::stated).map(|n| i64::from(n.value));

@@ -84,7 +84,8 @@ pub(super) fn yarn(stitch: Stitch) -> u64 {
     if stitch.kind == Kind::Ch {
         return CHAIN;
     }
-    let plain = (100.0 * stitch.kind.height()).round() as u64;
+    // Heights are positive, so this rounds.
+    let plain = (100.0 * stitch.kind.height() + 0.5) as u64;
     let posts = 100 * u64::from(stitch.makes.max(1)) + 55 * u64::from(stitch.works.max(1) - 1);
     plain * posts / 100
 }
