@@ -56,7 +56,8 @@ use frontend::mesh;
 use frontend::{Input, Reader};
 use generate::capunaman::Baseline;
 use ir::verify::Verified;
-use ir::{Finish, Gauge, Graph, Part, PartId, Pattern, Program};
+use ir::{Finish, Gauge, Graph, Part, PartId, Pattern, Program, Start};
+use lower::divide::{Parent, Share};
 use metrics::{Measure, Mesh, Sampler};
 use preview::{Refused, predict};
 use rayon::prelude::*;
@@ -158,11 +159,8 @@ pub fn program(shape: &Shape, options: &Options, sink: &mut Sink<'_>) -> Option<
         match joint {
             Joint::Surface => lower::join::on_surface(&mut program, part, to, sink)?,
             Joint::Opening => lower::join::through_slit(&mut program, part, to, sink)?,
-            Joint::Split => {
-                let message = "the last loop of its parent divides, which is not made yet";
-                sink.push(Diagnostic::new(Code::DividesOddly, message).in_round(&tube.name, None));
-                return None;
-            }
+            // They were begun on their loops.
+            Joint::Split => {}
         }
     }
     sink.stage("passes");
@@ -170,11 +168,15 @@ pub fn program(shape: &Shape, options: &Options, sink: &mut Sink<'_>) -> Option<
     Some(program)
 }
 
-/// A graph and a part for each tube. Tubes do not see each other, so they are laid in parallel.
+/// A graph and a part for each tube. Tubes do not see each other, so they are laid in parallel; only those into which
+/// another one divides begin on its last loops, and wait for it.
 fn lay(shape: &Shape, options: &Options, sink: &mut Sink<'_>) -> Option<Vec<(Graph, Part)>> {
     sink.stage("generate");
-    let one = |tube: &Tube, sink: &mut Sink<'_>| {
-        let mut graph = generate::generate(tube, &shape.gauge, &options.generate, sink)?;
+    let one = |tube: &Tube, share: Option<&Share>, sink: &mut Sink<'_>| {
+        let mut graph = match share {
+            Some(share) => generate::generate_on(tube, &share.loops, &shape.gauge, &options.generate, sink)?,
+            None => generate::generate(tube, &shape.gauge, &options.generate, sink)?,
+        };
         sink.stage("trace");
         let finish = match tube.end {
             End::Open => Finish::Open,
@@ -182,34 +184,89 @@ fn lay(shape: &Shape, options: &Options, sink: &mut Sink<'_>) -> Option<Vec<(Gra
         };
         let mut part = lower::trace(&tube.name, &graph, finish);
         lower::trim(&mut graph, &mut part);
+        if let Some(share) = share {
+            part.start = Start::Join { segments: share.segments.clone() };
+        }
         Some((graph, part))
     };
     if let [tube] = shape.tubes.as_slice() {
-        return Some(vec![one(tube, sink)?]);
+        return Some(vec![one(tube, None, sink)?]);
     }
+    let divides = |tube: &Tube| tube.attachment.is_some_and(|it| it.joint == Joint::Split);
     let done: Vec<_> = shape
         .tubes
         .par_iter()
         .map(|tube| {
             let mut findings = Sink::new();
-            (one(tube, &mut findings), findings.take())
+            let laid = if divides(tube) { None } else { Some(one(tube, None, &mut findings)) };
+            (laid, findings.take())
         })
         .collect();
-    let mut laid = Vec::with_capacity(done.len());
+    let mut laid: Vec<Option<(Graph, Part)>> = Vec::with_capacity(done.len());
     for (tube, findings) in done {
         for finding in findings {
             sink.push(finding);
         }
-        laid.push(tube);
+        laid.push(match tube {
+            Some(tube) => Some(tube?),
+            None => None,
+        });
+    }
+    for parent in 0..shape.tubes.len() {
+        let on = |tube: &Tube| divides(tube) && tube.attachment.is_some_and(|it| it.parent == parent);
+        let children: Vec<usize> = (0..shape.tubes.len()).filter(|i| on(&shape.tubes[*i])).collect();
+        if children.is_empty() {
+            continue;
+        }
+        let shares = divide(shape, parent, &children, laid.get_mut(parent)?.as_mut()?, sink)?;
+        for (child, share) in children.iter().zip(&shares) {
+            let tube = shape.tubes.get(*child)?;
+            *laid.get_mut(*child)? = Some(one(tube, Some(share), sink)?);
+        }
     }
     laid.into_iter().collect()
+}
+
+/// Divides the last loops of a tube between the two that it divides into.
+fn divide(
+    shape: &Shape,
+    parent: usize,
+    children: &[usize],
+    (graph, part): &mut (Graph, Part),
+    sink: &mut Sink<'_>,
+) -> Option<[Share; 2]> {
+    const AROUND: u32 = 128;
+    let odd = |message: String, help: &str, sink: &mut Sink<'_>| {
+        let name = shape.tubes.get(parent).map_or("?", |tube| &tube.name);
+        sink.push(Diagnostic::new(Code::DividesOddly, message).in_round(name, None).help(help));
+        None
+    };
+    let &[one, other] = children else {
+        let message = format!("a tube divides among {}, not two", children.len());
+        return odd(message, "let it divide in two, and one of these again", sink);
+    };
+    let line = |child: usize| -> Vec<glam::DVec3> {
+        let point = |k: u32| shape.tubes[child].surface.point(0.0, f64::from(k) / f64::from(AROUND));
+        (0..AROUND).map(point).collect()
+    };
+    let (first, second) = (line(one), line(other));
+    let mut whole = Parent { part, graph, id: PartId(parent as u32) };
+    let children = [(PartId(one as u32), first.as_slice()), (PartId(other as u32), second.as_slice())];
+    let size = [shape.gauge.width, shape.gauge.height];
+    let shares = lower::divide::divide(&mut whole, children, size);
+    if shares.is_none() {
+        let name = |child: usize| shape.tubes.get(child).map_or("?", |tube| tube.name.as_str());
+        let message = format!("too few loops to divide between {} and {}", name(one), name(other));
+        return odd(message, "use a smaller stitch, or make both about as wide", sink);
+    }
+    shares
 }
 
 /// Measures the graphs of a program against the shape that they were generated from.
 pub fn measure(shape: &Shape, program: &Program) -> Measure {
     let mut sampler = Sampler::new(shape.gauge);
-    for (tube, graph) in shape.tubes.iter().zip(&program.graphs) {
-        sampler.add(tube, &Mesh::of_graph(graph));
+    for ((index, tube), graph) in shape.tubes.iter().enumerate().zip(&program.graphs) {
+        sampler.add(tube, &net(shape, index, graph));
         sampler.count(graph);
     }
     sampler.finish()
@@ -217,8 +274,24 @@ pub fn measure(shape: &Shape, program: &Program) -> Measure {
 
 /// Measures each part by itself, in the order of the tubes.
 pub fn measure_parts(shape: &Shape, program: &Program) -> Vec<Measure> {
-    let parts = shape.tubes.iter().zip(&program.graphs);
-    parts.map(|(tube, graph)| metrics::measure(tube, &shape.gauge, graph)).collect()
+    let parts = shape.tubes.iter().enumerate().zip(&program.graphs);
+    let measure = |((index, tube), graph): ((usize, &Tube), &Graph)| {
+        let mut sampler = Sampler::new(shape.gauge);
+        sampler.add(tube, &net(shape, index, graph));
+        sampler.count(graph);
+        sampler.finish()
+    };
+    parts.map(measure).collect()
+}
+
+/// The net of one tube; where a tube divides, rows do not end as a helix does.
+fn net<'g>(shape: &Shape, index: usize, graph: &'g Graph) -> Mesh<'g> {
+    let splits = |tube: &Tube, parent: Option<usize>| {
+        tube.attachment.is_some_and(|it| it.joint == Joint::Split && parent.is_none_or(|at| at == it.parent))
+    };
+    let begins = shape.tubes.get(index).is_some_and(|tube| splits(tube, None));
+    let ends = shape.tubes.iter().any(|tube| splits(tube, Some(index)));
+    Mesh::of_graph(graph).ragged([begins, ends])
 }
 
 /// Lays the [baseline](generate::capunaman) of the paper's tables on each tube of a shape.

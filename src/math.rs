@@ -1,4 +1,4 @@
-//! The only sine, cosine and their kin: thin names over `libm`, so that every platform gives the same bits.
+//! The only sine, cosine and their kin, thin names over `libm`, so that every platform gives the same bits; and small sums.
 
 /// Full turn in radians.
 pub const TAU: f64 = core::f64::consts::TAU;
@@ -83,6 +83,33 @@ pub fn sin_cos_turns(turns: f64) -> (f64, f64) {
     }
 }
 
+/// The stretch of a ring of numbers with the greatest sum: its first index, and how many there are; none where no number
+/// is positive.
+pub(crate) fn stretch(values: &[f64]) -> (usize, usize) {
+    let best_of = |sign: f64| {
+        let (mut best, mut sum, mut first) = ((0.0, 0, 0), 0.0, 0);
+        for (i, value) in values.iter().enumerate() {
+            if sum <= 0.0 {
+                (sum, first) = (0.0, i);
+            }
+            sum += sign * value;
+            if sum > best.0 {
+                best = (sum, first, i + 1 - first);
+            }
+        }
+        best
+    };
+    // What lies across the beginning is all but a stretch with the least sum.
+    let (most, least) = (best_of(1.0), best_of(-1.0));
+    let total: f64 = values.iter().sum();
+    let count = values.len();
+    if total + least.0 > most.0 + 1e-9 && least.2 < count {
+        ((least.1 + least.2) % count, count - least.2)
+    } else {
+        (most.1, most.2)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,5 +126,13 @@ mod tests {
         let quarters = [0.0, 0.25, 0.5, 0.75, 1.0, -0.25].map(sin_cos_turns);
         assert_eq!(quarters, [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)]);
         assert!(sin_cos_turns(f64::NAN).0.is_nan());
+    }
+
+    #[test]
+    fn the_best_stretch_may_lie_across_the_beginning() {
+        assert_eq!(stretch(&[1.0, 2.0, -5.0, 3.0]), (3, 3));
+        assert_eq!(stretch(&[-1.0, 2.0, 1.0, -4.0, 1.0]), (1, 2));
+        assert_eq!(stretch(&[-1.0, -2.0]).1, 0);
+        assert_eq!(stretch(&[1.0, 1.0]).1, 2);
     }
 }

@@ -66,6 +66,84 @@ pub(super) fn centered_places(count: u32) -> impl Iterator<Item = f64> {
     (0..count).map(move |j| (f64::from(j) + 0.5) / f64::from(count))
 }
 
+/// The place of a first row that is picked up from points beside the start of a surface: where around it that row begins,
+/// and its stitches on the surface turned so, the row before the helix.
+pub(super) fn picked_up(surface: &dyn ParametricSurface, points: &[DVec3]) -> (f64, Vec<Foot>) {
+    const SAMPLES: usize = 512;
+    let line: Vec<DVec3> = (0..SAMPLES).map(|k| surface.point(0.0, k as f64 / SAMPLES as f64)).collect();
+    // The foot of a point on the line, sought from a sample on for so many.
+    let foot = |point: DVec3, from: usize, reach: usize| {
+        let mut best = (f64::INFINITY, 0.0);
+        for k in from..from + reach {
+            let (a, b) = (line[k % SAMPLES], line[(k + 1) % SAMPLES]);
+            let t = ((point - a).dot(b - a) / (b - a).length_squared().max(1e-300)).clamp(0.0, 1.0);
+            let distance = a.lerp(b, t).distance_squared(point);
+            if distance < best.0 {
+                best = (distance, (k as f64 + t) / SAMPLES as f64);
+            }
+        }
+        best.1
+    };
+    let turn = points.first().map_or(0.0, |point| foot(*point, 0, SAMPLES));
+    let mut last = turn;
+    let feet = points.iter().map(|point| {
+        // They follow each other once around.
+        let rest = ((turn + 1.0 - last) * SAMPLES as f64).ceil().max(1.0) as usize;
+        last = foot(*point, (last * SAMPLES as f64) as usize, rest.min(SAMPLES / 2)).clamp(last, turn + 1.0);
+        let (u, v) = nearest(surface, *point, last);
+        let jet = surface.jet(u, v);
+        Foot { u, v: v - turn - 1.0, point: *point, du: jet.du, dv: jet.dv, along: DVec3::ZERO }
+    });
+    let feet = feet.collect();
+    (turn, feet)
+}
+
+/// The place of the surface next to a point beside its start, sought from a place on the line there.
+fn nearest(surface: &dyn ParametricSurface, point: DVec3, line: f64) -> (f64, f64) {
+    const STEPS: u32 = 12;
+    const MOST: f64 = 0.05;
+    let (mut u, mut v) = (0.0, line);
+    let mut jet = surface.jet(u, v);
+    for _ in 0..STEPS {
+        let (x, y) = super::sheet::pull_back(jet.du, jet.dv, point - jet.point);
+        let long = (x.abs().max(y.abs()) / MOST).max(1.0);
+        let (mut x, mut y) = (x / long, y / long);
+        let mut moved = false;
+        for _ in 0..5 {
+            let next = surface.jet(u + x, v + y);
+            if next.point.distance_squared(point) < jet.point.distance_squared(point) {
+                (u, v, jet, moved) = (u + x, v + y, next, true);
+                break;
+            }
+            (x, y) = (0.4 * x, 0.4 * y);
+        }
+        if !moved {
+            break;
+        }
+    }
+    (u, v)
+}
+
+/// How many rows a first row that is picked up lies farther along the tube than the end of a helix does.
+pub(super) fn lead(surface: &dyn ParametricSurface, feet: &[Foot], height: f64) -> f64 {
+    let past = |foot: &Foot| {
+        let jet = surface.jet(0.0, foot.v);
+        (foot.point - jet.point).dot(jet.du.normalize_or_zero()) / height
+    };
+    let mean = feet.iter().map(past).sum::<f64>() / feet.len().max(1) as f64;
+    (mean + 0.5).clamp(-0.5, 1.5)
+}
+
+/// Adds a first row that is picked up.
+pub(super) fn lay_picked_up(sheet: &mut Sheet, feet: &[Foot]) {
+    for foot in feet {
+        let id = sheet.add(foot, Shaped::No);
+        if id > 0 {
+            sheet.course(id - 1, id);
+        }
+    }
+}
+
 /// Adds the first row on the helix.
 pub(super) fn lay(
     surface: &dyn ParametricSurface,

@@ -29,7 +29,7 @@ use glam::DVec3;
 use relax::{Effort, Ends, Mark, Relaxer};
 use rows::Rows;
 use seam::Turned;
-use sheet::Sheet;
+use sheet::{Foot, Sheet};
 use weave::{Outcome, Weaver};
 
 /// Nodes may slide this far over an open end while they settle.
@@ -37,12 +37,36 @@ const OVERHANG: [f64; 2] = [-0.02, 1.06];
 /// At a pole they keep this share of the first row's distance.
 const POLE_DISTANCE: f64 = 0.3;
 
+/// Rows by which a given first row counts as higher, for each turn that a try would turn another one by.
+const LIFT: f64 = 4.0;
+
 const GENTLER: &str = "bend the curve less, or make the sections change more gently";
 
 /// The stitch graph of one tube; `None` with the reason in the sink when it cannot be made.
 ///
 /// Equal input gives the same graph, bit for bit.
 pub fn generate(tube: &Tube, gauge: &Gauge, options: &Options, sink: &mut Sink<'_>) -> Option<Graph> {
+    lay(tube, None, gauge, options, sink)
+}
+
+/// The stitch graph of a tube whose first row is given: loops of another part beside its start, in working order (mm).
+pub fn generate_on(
+    tube: &Tube,
+    loops: &[DVec3],
+    gauge: &Gauge,
+    options: &Options,
+    sink: &mut Sink<'_>,
+) -> Option<Graph> {
+    lay(tube, Some(loops), gauge, options, sink)
+}
+
+fn lay(
+    tube: &Tube,
+    loops: Option<&[DVec3]>,
+    gauge: &Gauge,
+    options: &Options,
+    sink: &mut Sink<'_>,
+) -> Option<Graph> {
     let fail = |sink: &mut Sink<'_>, code, message: String, help: &str| {
         sink.push(Diagnostic::new(code, message).in_round(&tube.name, None).help(help));
         None
@@ -54,11 +78,14 @@ pub fn generate(tube: &Tube, gauge: &Gauge, options: &Options, sink: &mut Sink<'
     let options = &options.resolved();
     // A branch in a slit begins at an end of it, with as many loops below as above.
     let slit = matches!(tube.attachment, Some(Attachment { joint: Joint::Opening, .. }));
-    let turned = if slit {
-        Turned { surface: &*tube.surface, by: 0.0 }
-    } else {
-        Turned::to_slowest_side(&*tube.surface)
+    let picked_up = loops.map(|loops| first_row::picked_up(&*tube.surface, loops));
+    let turned = match &picked_up {
+        Some((by, _)) => Turned { surface: &*tube.surface, by: *by },
+        None if slit => Turned { surface: &*tube.surface, by: 0.0 },
+        None => Turned::to_slowest_side(&*tube.surface),
     };
+    let fixed = slit || picked_up.is_some();
+    let first = picked_up.as_ref().map(|(_, feet)| feet.as_slice());
     let surface: &dyn ParametricSurface = &turned;
     let ends = [tube.start, tube.end];
     let expected = area(surface, 10, 16) / (gauge.width * gauge.height);
@@ -76,21 +103,31 @@ pub fn generate(tube: &Tube, gauge: &Gauge, options: &Options, sink: &mut Sink<'
         return fail(sink, Code::TooLarge, message, "use a larger stitch, or check the unit of the file");
     }
     sink.stage("rows");
-    let Some(rows) = Rows::new(surface, ends, gauge.height) else {
+    let mut leads = ends.map(rows::lead);
+    if let Some(feet) = first {
+        leads[0] = first_row::lead(surface, feet, gauge.height);
+    }
+    let Some(rows) = Rows::new(surface, leads, gauge.height) else {
         let message = format!("a stitch of {:.2} mm height is too high for this tube", gauge.height);
         return fail(sink, Code::TooFewRows, message, "use a smaller stitch or a longer shape");
     };
     sink.stage("stitches");
     let most = (3.0 * expected) as usize + 10_000;
-    let laid = Ground { slit, ..Ground::new(surface, ends, &rows, gauge, options) }.lay_evenly(sink);
-    let laid = laid.map(|(sheet, start)| Laid { sheet, start, turn: turned.by });
-    let Some(Laid { sheet, start, turn }) = laid.or_else(|| {
-        tries::best(options, expected, |options, turn| {
-            let turn = if slit { 0.0 } else { turn };
-            let turned = Turned { surface: turned.surface, by: turned.by + turn };
-            let ground = Ground { slit, ..Ground::new(&turned, ends, &rows, gauge, options) };
+    let laid = Ground { slit, first, ..Ground::new(surface, ends, &rows, gauge, options) }.lay_evenly(sink);
+    let laid = laid.map(|(sheet, start)| Laid { sheet, start, turn: turned.by, lifted: None });
+    let Some(Laid { sheet, start, turn, lifted }) = laid.or_else(|| {
+        tries::best(options, expected, first.is_some(), |options, turn| {
+            // Where the place of the first row is given, its height is varied.
+            let lifted =
+                first.and_then(|_| Rows::new(surface, [leads[0] + LIFT * turn, leads[1]], gauge.height));
+            let turned = Turned { surface: turned.surface, by: turned.by + if fixed { 0.0 } else { turn } };
+            let rows = lifted.as_ref().unwrap_or(&rows);
+            let mut ground = Ground { slit, first, ..Ground::new(&turned, ends, rows, gauge, options) };
+            for foot in first.unwrap_or_default() {
+                ground.range[0] = ground.range[0].min(foot.u);
+            }
             let (sheet, start) = ground.weave(most, sink)?;
-            Some(Laid { sheet, start, turn: turned.by })
+            Some(Laid { sheet, start, turn: turned.by, lifted })
         })
     }) else {
         let message =
@@ -106,7 +143,7 @@ pub fn generate(tube: &Tube, gauge: &Gauge, options: &Options, sink: &mut Sink<'
         return fail(sink, Code::SurfaceBroken, "stitches ran off this surface".into(), GENTLER);
     }
     let poles = Ground::new(surface, ends, &rows, gauge, options).poles;
-    Some(finish::graph(&sheet, &rows, start, poles, turn))
+    Some(finish::graph(&sheet, lifted.as_ref().unwrap_or(&rows), start, poles, turn))
 }
 
 /// A finished sheet, the stitches of its first row, and where around the tube the helix began.
@@ -114,6 +151,8 @@ struct Laid {
     sheet: Sheet,
     start: usize,
     turn: f64,
+    /// Other rows than planned.
+    lifted: Option<Rows>,
 }
 
 /// What all ways of laying stitches share.
@@ -128,6 +167,8 @@ struct Ground<'s> {
     range: [f64; 2],
     /// The first row is worked into a slit.
     slit: bool,
+    /// The first row, where it is picked up.
+    first: Option<&'s [Foot]>,
 }
 
 impl<'s> Ground<'s> {
@@ -147,13 +188,13 @@ impl<'s> Ground<'s> {
             limit(ends[0], OVERHANG[0], rows.at(0.0), 0.0),
             limit(ends[1], OVERHANG[1], rows.at(rows.count), 1.0),
         ];
-        Self { surface, rows, gauge, options, poles, range, slit: false }
+        Self { surface, rows, gauge, options, poles, range, slit: false, first: None }
     }
 
     /// Even repeats on a surface of revolution, settled; with the stitches of the first row. `None` elsewhere.
     fn lay_evenly(&self, sink: &Sink<'_>) -> Option<(Sheet, usize)> {
         let Self { surface, rows, options, .. } = *self;
-        if !options.symmetric || self.slit || !is_revolution(surface) {
+        if !options.symmetric || self.slit || self.first.is_some() || !is_revolution(surface) {
             return None;
         }
         let rounds = rows.count as u32;
@@ -188,7 +229,9 @@ impl<'s> Ground<'s> {
     fn weave(&self, most: usize, sink: &Sink<'_>) -> Option<(Sheet, usize)> {
         let Self { surface, rows, options, .. } = *self;
         let mut sheet = Sheet::new(self.gauge);
-        if self.poles[0].is_some() {
+        if let Some(first) = self.first {
+            first_row::lay_picked_up(&mut sheet, first);
+        } else if self.poles[0].is_some() {
             let ring = first_row::ring_size(surface, rows, self.gauge);
             first_row::lay(surface, &mut sheet, first_row::centered_places(ring), rows);
         } else {

@@ -16,7 +16,7 @@ pub(crate) struct Rows {
     knots: Vec<f64>,
     /// Table rows per row of the pattern.
     scale: f64,
-    /// Table rows before row 0: half a row at a pole, where the first ring lies one row off on average.
+    /// Table rows before row 0: see [`lead`].
     lead: f64,
     /// Number of rows; whole.
     pub count: f64,
@@ -33,9 +33,14 @@ pub(crate) fn row_speed(jet: &Jet) -> f64 {
     (jet.du.length_squared() - along * along / around).max(0.0).sqrt()
 }
 
+/// Rows beyond an end: half a row at a pole, where the ring next to it lies one row off on average.
+pub(crate) fn lead(end: End) -> f64 {
+    if end == End::Closed { 0.5 } else { 0.0 }
+}
+
 impl Rows {
-    /// Spaces rows of height `height` over the tube. `None` when not even two rows fit or the surface has no length.
-    pub(crate) fn new(surface: &dyn ParametricSurface, ends: [End; 2], height: f64) -> Option<Self> {
+    /// Spaces rows of height `height` over the tube, of which the first and the last lie so many rows off its ends ([`lead`]). `None` when not even two rows fit or the surface has no length.
+    pub(crate) fn new(surface: &dyn ParametricSurface, [lead, tail]: [f64; 2], height: f64) -> Option<Self> {
         let spacing = |u: f64| {
             let (mut least, mut sum) = (f64::MAX, 0.0);
             for k in 0..AROUND {
@@ -61,8 +66,6 @@ impl Rows {
         let last = knots.len() - 1;
         let partial = (1.0 - knots[last - 1]) / (knots[last] - knots[last - 1]);
         let total = last as f64 - 1.0 + partial;
-        let lead = if ends[0] == End::Closed { 0.5 } else { 0.0 };
-        let tail = if ends[1] == End::Closed { 0.5 } else { 0.0 };
         let count = (total - lead - tail).round().max(1.0);
         (total >= 0.75).then(|| Self { knots, scale: total / (count + lead + tail), lead, count })
     }

@@ -56,17 +56,23 @@ fn variant(base: &Options, index: usize) -> (Options, f64) {
     (options, change.turn)
 }
 
-/// The best of the tries that `lay` makes; `None` when none comes to an end.
+/// The best of the tries that `lay` makes; `None` when none comes to an end. Where the first row is `given`, all tries
+/// are made.
 pub(super) fn best(
     options: &Options,
     expected: f64,
+    given: bool,
     mut lay: impl FnMut(&Options, f64) -> Option<Laid>,
 ) -> Option<Laid> {
     let tries = if expected > MOST_STITCHES { 1 } else { options.tries as usize };
     let most = if options.tries > 1 && expected <= MOST_RESCUED { tries + RESCUES } else { tries };
     let mut best: Option<(Score, Laid)> = None;
     for index in 0..most {
-        let enough = if index < tries { GOOD } else { f64::MAX };
+        let enough = match index < tries {
+            true if given => 0.0,
+            true => GOOD,
+            false => f64::MAX,
+        };
         if best.as_ref().is_some_and(|(score, _)| score.inverted == 0 && score.total <= enough) {
             break;
         }

@@ -10,7 +10,7 @@ use crate::ir::{
 use glam::DVec3;
 
 /// A chain that counts as a stitch.
-const CHAIN: Stitch = Stitch { kind: Kind::Ch, works: 0, makes: 1, entry: Entry::Both };
+pub(super) const CHAIN: Stitch = Stitch { kind: Kind::Ch, works: 0, makes: 1, entry: Entry::Both };
 /// Farthest that a first loop may lie from the stitch it is worked into, in stitches.
 const REACH: f64 = 4.0;
 /// Farthest that a slit may lie from the middle of the branch that grows from it, in stitches.

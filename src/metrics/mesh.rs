@@ -60,6 +60,8 @@ pub struct Mesh<'g> {
     pub open: Vec<NodeId>,
     /// Short rows.
     pub short_rows: usize,
+    /// Whether the first and the last row lie elsewhere than a helix begins and ends.
+    pub ragged: [bool; 2],
 }
 
 impl<'g> Mesh<'g> {
@@ -76,6 +78,12 @@ impl<'g> Mesh<'g> {
         walk(graph, &mut mesh);
         mesh.find_open();
         mesh
+    }
+
+    /// The same net with its first, and its last row, where they lie: not as a helix begins and ends.
+    #[must_use]
+    pub fn ragged(self, ragged: [bool; 2]) -> Self {
+        Self { ragged, ..self }
     }
 
     /// The edges and tiles of a net that is given by its wales, sorted by base; the yarn runs from node to node.
@@ -112,6 +120,14 @@ impl<'g> Mesh<'g> {
             }
         }
         self.open = (0..self.nodes.len() as NodeId).filter(|id| !worked[*id as usize]).collect();
+    }
+
+    /// Loops that were worked into another one.
+    pub(super) fn worked(&self) -> usize {
+        let mut tops: Vec<NodeId> = self.wales.iter().map(|wale| wale.to).collect();
+        tops.sort_unstable();
+        tops.dedup();
+        tops.len()
     }
 
     pub(super) fn node(&self, id: NodeId) -> Option<&Node> {

@@ -3,7 +3,7 @@
 use super::geometry::{along, area, disc, skew, triangle};
 use super::mesh::{Class, Mesh};
 use super::{LengthError, Lengths, Level, Measure, PaperLengths, Skew, Stats};
-use crate::ir::{Gauge, Graph, NodeId};
+use crate::ir::{Gauge, Graph, Node, NodeId};
 use crate::shape::{End, ParametricSurface, Tube};
 
 /// Chords along the surface in our convention.
@@ -149,27 +149,36 @@ impl Sampler {
         }
         let (first, last) = (mesh.start, mesh.open.len());
         let wedge = 0.5 * self.gauge.width * self.gauge.height;
+        let beyond = |surface: &dyn ParametricSurface, mesh: &Mesh<'_>, row: &[NodeId], u: f64| {
+            self.gauge.width
+                * row.iter().filter_map(|id| mesh.node(*id)).map(|node| past(surface, node, u)).sum::<f64>()
+        };
         let area = area(surface);
-        let mut open = 0;
+        let mut open = 0.0;
         let first_row: Vec<NodeId> = (0..first as NodeId).collect();
         // Between an open edge and the helix lies half a row that no stitch covers; a pole is covered to its center.
         match tube.start {
-            End::Open => open += first,
+            End::Open if mesh.ragged[0] => open += beyond(surface, mesh, &first_row, 0.0),
+            End::Open => open += wedge * first as f64,
             End::Closed => {
                 self.tiles += disc(mesh, &first_row, surface.point(0.0, 0.0), mesh.nodes.get(first));
             }
         }
         match tube.end {
-            End::Open => open += last,
+            End::Open if mesh.ragged[1] => open -= beyond(surface, mesh, &mesh.open, 1.0),
+            End::Open => open += wedge * last as f64,
             End::Closed => {
                 let below = mesh.wales.iter().rev().find(|wale| Some(&wale.to) == mesh.open.last());
                 let below = below.and_then(|wale| mesh.node(wale.from));
                 self.tiles += disc(mesh, &mesh.open, surface.point(1.0, 0.0), below);
             }
         }
-        self.coverable += area - open as f64 * wedge;
-        self.coverable_by_count += area - (first + last) as f64 * wedge;
-        self.covering += mesh.nodes.len() - first;
+        self.coverable += area - open;
+        let ragged = mesh.ragged[0] || mesh.ragged[1];
+        self.coverable_by_count += area - if ragged { open } else { (first + last) as f64 * wedge };
+        // Chains between two sides of a gap cover nothing.
+        let chains = if ragged { mesh.nodes.len() - first - mesh.worked() } else { 0 };
+        self.covering += mesh.nodes.len() - first - chains;
     }
 
     fn level(&mut self, mesh: &Mesh<'_>) {
@@ -240,4 +249,10 @@ impl Sampler {
             ..self.measure
         }
     }
+}
+
+/// How far (mm) a loop lies past the line at u.
+fn past(surface: &dyn ParametricSurface, node: &Node, u: f64) -> f64 {
+    let jet = surface.jet(u, node.v);
+    (node.position - jet.point).dot(jet.du.normalize_or_zero())
 }

@@ -282,7 +282,14 @@ impl Walk {
         if stitch.kind == Kind::Skip {
             return;
         }
-        if base.is_empty() && self.place != NONE && stitch.makes > 0 && stitch.kind != Kind::Fsc {
+        // Of chains that cross a gap only the first leaves from a stitch.
+        let again = stitch.kind == Kind::Ch
+            && self
+                .net
+                .worked
+                .last()
+                .is_some_and(|step| matches!(step.role, Role::Work(it) if it.kind == Kind::Ch));
+        if base.is_empty() && self.place != NONE && stitch.makes > 0 && stitch.kind != Kind::Fsc && !again {
             base.push(self.place);
         }
         if against {

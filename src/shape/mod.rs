@@ -12,11 +12,12 @@ mod meridian;
 pub mod mesh;
 mod profile;
 mod revolve;
-mod ring;
+pub(crate) mod ring;
 mod smooth;
 pub(crate) mod solid;
 pub mod spec;
-mod stack;
+pub(crate) mod split;
+pub(crate) mod stack;
 pub mod sweep;
 
 pub use bezier::Bezier;
@@ -85,10 +86,10 @@ pub enum Joint {
     /// held for the branch, and the parent goes on over chains. The branch begins on the held loops and the
     /// other side of the chains.
     Opening,
-    /// The parent ends where its last loop divides among two or more children, as a pair of trousers does. All children
-    /// of that parent with this joint share its last loop S(1, v): each begins with a loop S(0, v) of its own beside
-    /// it, picks up the open loops of the parent that are nearest, and goes on over chains where it leaves the parent's
-    /// loop to close on itself. The end of such a parent is [`End::Open`].
+    /// The parent ends where its last loop divides among two children, as a pair of trousers does. Both share its last
+    /// loop S(1, v): each begins with a loop S(0, v) of its own, which follows the parent's loop for a stretch and
+    /// closes along a straight line, the crotch. It is worked into the open loops of its stretch and along chains that
+    /// lie across. The end of such a parent is [`End::Open`].
     Split,
 }
 

@@ -152,7 +152,7 @@ impl Ring {
 }
 
 /// Mean and greatest distance of samples.
-pub(super) fn gap(a: &[DVec3], b: &[DVec3]) -> (f64, f64) {
+pub(crate) fn gap(a: &[DVec3], b: &[DVec3]) -> (f64, f64) {
     let (mut sum, mut most) = (0.0, 0.0_f64);
     for (a, b) in a.iter().zip(b) {
         let distance = a.distance(*b);

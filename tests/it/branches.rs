@@ -259,3 +259,62 @@ proptest! {
         }
     }
 }
+
+/// The trousers that are shipped, with something replaced.
+fn trousers(old: &str, new: &str) -> Result<(Shape, Program), Vec<String>> {
+    let (_, path) = shapes().into_iter().find(|(name, _)| name == "trousers").expect("shipped");
+    let toml = text(&path);
+    assert!(toml.contains(old), "{old}");
+    make(&toml.replacen(old, new, 1))
+}
+
+#[test]
+fn trousers_divide_without_a_loop_left_over() {
+    let (shape, program) = trousers("", "").unwrap_or_else(|found| panic!("{found:?}"));
+    let [trunk, left, right] = program.pattern.parts.as_slice() else { panic!("three parts") };
+    let round = trunk.rows.iter().rev().nth(2).expect("rounds before the division");
+    let leaves = picot::ir::joins::Leaves::of(trunk, &program.graphs[0]);
+    assert!(leaves.open.is_empty(), "every loop is held");
+    let made = round.body.steps().map(|step| if let Step::Work(it) = step { u32::from(it.makes) } else { 0 });
+    let chains =
+        program.graphs[0].tiles.iter().filter(|tile| tile.stitch.is_some_and(|it| it.kind == Kind::Ch));
+    let chains = chains.count() as u32;
+    assert!(chains > 0);
+    // Each loop of the last round and each chain is below one leg, and the chain has its other side below the other.
+    assert_eq!(left.start.loops() + right.start.loops(), made.sum::<u32>() + 2 * chains);
+    let mut bases: Vec<u32> = pairs(&program)
+        .values()
+        .flatten()
+        .filter(|pair| pair.to == PartId(0))
+        .map(|pair| pair.base)
+        .collect();
+    let all = bases.len();
+    bases.sort_unstable();
+    bases.dedup();
+    assert_eq!(bases.len() as u32, all as u32 - chains, "only chains are worked twice");
+    for (measure, part) in picot::measure_parts(&shape, &program).iter().zip(&program.pattern.parts) {
+        let (length, skew) = (measure.length_error.chord.mean_abs, measure.skew.all.mean);
+        assert!(length <= 0.05 && skew <= 0.12, "{}: {length} {skew}", part.name);
+        assert!((0.96..=1.04).contains(&measure.coverage), "{}: {}", part.name, measure.coverage);
+    }
+}
+
+#[test]
+fn what_cannot_divide_is_told() {
+    let second = "\n[[branch]]\nname = \"right leg\"\nfrom = 1\njoin = \"split\"";
+    let cases = [
+        (second, "\n[[branch]]\nname = \"right leg\"\nfrom = 0.4", "E1305"),
+        ("from = 1\n", "from = 0.5\n", "E1305"),
+        ("interpolation = \"smooth\"\n", "interpolation = \"smooth\"\nend = \"closed\"\n", "E1305"),
+        (
+            "curve = [[4, 0, 9], [4.4, 0, 15], [5, 0, 22]]",
+            "curve = [[-4, 0, 9], [-4.4, 0, 15], [-5, 0, 22]]",
+            "E1305",
+        ),
+        ("[5, 0, 22]", "[-4.5, 0, 22]", "E1116"),
+    ];
+    for (old, new, code) in cases {
+        let found = trousers(old, new).map(|_| ()).expect_err(new);
+        assert!(found.iter().any(|it| it.starts_with(code)), "{new}: {found:?}");
+    }
+}

@@ -7,7 +7,7 @@ use picot::frontend::{Input, Unit, mesh::Reading, mesh::Up, reader_for_extension
 use picot::ir::verify::verify;
 use picot::ir::{Gauge, Program};
 use picot::math::{TAU, cos, sin};
-use picot::shape::{End, ParametricSurface, Shape};
+use picot::shape::{End, Joint, ParametricSurface, Shape};
 use picot::{Options, measure, read};
 use std::io;
 
@@ -103,6 +103,10 @@ fn single_tubes_become_patterns_that_cover_them() {
         assert_eq!(shape.tubes.len(), 1, "{name}");
         let (shape, program) = pattern(shape, &options(5.0));
         let figures = measure(&shape, &program);
+        println!(
+            "{name}: {} {} {}",
+            figures.coverage, figures.length_error.chord.mean_abs, figures.skew.all.mean
+        );
         assert!((0.97..=1.03).contains(&figures.coverage), "{name}: {}", figures.coverage);
         assert!(figures.length_error.chord.mean_abs < 0.07, "{name}: {:?}", figures.length_error.chord);
     }
@@ -197,7 +201,7 @@ fn limbs_are_found() {
         union(union(p.length() - 30.0, side(-1.0), 4.0), side(1.0), 4.0)
     };
     let cases: [(&str, Solid, usize); 5] = [
-        ("y", Solid::level_set(y, v(-60., -18., -78.), v(60., 18., 60.), 4.0), 2),
+        ("y", Solid::level_set(y, v(-60., -18., -78.), v(60., 18., 60.), 4.0), 3),
         ("cross", Solid::level_set(cross, v(-76., -16., -76.), v(76., 16., 76.), 4.0), 3),
         ("teddy", Solid::level_set(teddy, v(-80., -32., -95.), v(80., 32., 102.), 4.0), 6),
         ("octopus", Solid::level_set(octopus, v(-97., -97., -33.), v(97., 97., 78.), 4.0), 9),
@@ -210,6 +214,10 @@ fn limbs_are_found() {
         assert!(shape.tubes.iter().skip(1).all(|tube| tube.attachment.is_some()), "{name}");
         let (shape, program) = pattern(shape, &options(4.0));
         let figures = measure(&shape, &program);
+        println!(
+            "{name}: {} {} {}",
+            figures.coverage, figures.length_error.chord.mean_abs, figures.skew.all.mean
+        );
         assert!((0.97..=1.03).contains(&figures.coverage), "{name}: {}", figures.coverage);
         assert!(figures.length_error.chord.mean_abs < 0.07, "{name}: {:?}", figures.length_error.chord);
     }
@@ -477,4 +485,30 @@ fn openings_are_ends() {
     assert_eq!((shape.tubes.len(), shape.tubes[0].start, shape.tubes[0].end), (1, End::Open, End::Open));
     let cup = shape_of(&Solid::tube(&rings, [None, Some(v(0., 0., 62.))]), 5.0);
     assert_eq!((cup.tubes[0].start, cup.tubes[0].end), (End::Open, End::Closed));
+}
+
+#[test]
+fn a_mesh_of_trousers_divides() {
+    let body = |p: DVec3| {
+        let legs = union(
+            capsule(p, v(-38., 0., 40.), v(-46., 0., 160.), 26.0),
+            capsule(p, v(38., 0., 40.), v(46., 0., 160.), 26.0),
+            10.0,
+        );
+        union(capsule(p * v(0.6, 1., 1.), v(0., 0., -60.), v(0., 0., 20.), 36.0), legs, 12.0)
+    };
+    let whole = Solid::level_set(body, v(-82., -44., -64.), v(82., 44., 124.), 5.0);
+    // The waist and the hems are open.
+    let cut = whole.between(-40.0, 100.0);
+    let shape = shape_of(&cut, 5.0);
+    let names: Vec<&str> = shape.tubes.iter().map(|tube| tube.name.as_str()).collect();
+    assert_eq!(names, ["trunk", "limb A", "limb B"]);
+    assert!(
+        shape.tubes.iter().skip(1).all(|tube| tube.attachment.is_some_and(|it| it.joint == Joint::Split))
+    );
+    let (shape, program) = pattern(shape, &options(5.0));
+    let figures = measure(&shape, &program);
+    assert!((0.97..=1.03).contains(&figures.coverage), "{}", figures.coverage);
+    assert!(figures.length_error.chord.mean_abs < 0.05, "{:?}", figures.length_error.chord);
+    assert!(figures.skew.all.mean < 0.12, "{:?}", figures.skew.all);
 }

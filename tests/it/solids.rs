@@ -36,6 +36,16 @@ impl Solid {
         solid
     }
 
+    /// What lies between two heights, open at both.
+    pub(crate) fn between(mut self, low: f64, high: f64) -> Self {
+        let points = &self.points;
+        self.faces.retain(|face| face.iter().any(|v| (low..=high).contains(&points[*v as usize].z)));
+        for point in &mut self.points {
+            point.z = point.z.clamp(low, high);
+        }
+        self
+    }
+
     /// A ball around the origin.
     pub(crate) fn ball(radius: f64, stacks: u32) -> Self {
         let ring = |i: u32| {

@@ -338,7 +338,7 @@ fn start(part: &Part, words: &Words<'_>, text: &mut Text<'_>) -> io::Result<()> 
     match part.start {
         // The first row says what goes into the ring.
         Start::Ring { loops: 0 } | Start::Chain { loops: 0, joined: false } => Ok(()),
-        Start::Join { ref segments } => pick_up(words, segments, text),
+        Start::Join { ref segments } => pick_up(words, part, segments, text),
         Start::Ring { loops } => {
             let space = if forms.glued { "" } else { " " };
             let stitch = format!("{loops}{space}{}", words.base(Kind::Sc));
@@ -358,15 +358,26 @@ fn start(part: &Part, words: &Words<'_>, text: &mut Text<'_>) -> io::Result<()> 
 }
 
 /// Says how the first loops of a part are picked up.
-fn pick_up(words: &Words<'_>, segments: &[Segment], text: &mut Text<'_>) -> io::Result<()> {
+fn pick_up(words: &Words<'_>, part: &Part, segments: &[Segment], text: &mut Text<'_>) -> io::Result<()> {
     if words.language != Language::English {
         return Ok(());
     }
     let held = segments.iter().any(|segment| matches!(segment, Segment::Held { .. }));
     let around = segments.iter().any(|segment| matches!(segment, Segment::Surface { .. }));
-    let source = source(segments).and_then(|id| words.program.pattern.parts.get(id.0 as usize));
-    let Some(source) = source.map(|part| name(&part.name, words.language)) else { return Ok(()) };
-    text.prose(&if held && around {
+    let source_part = source(segments).and_then(|id| words.program.pattern.parts.get(id.0 as usize));
+    let Some(source) = source_part.map(|part| name(&part.name, words.language)) else { return Ok(()) };
+    let own = words.program.pattern.parts.iter().position(|other| std::ptr::eq(other, part));
+    let places = match (own, source_part) {
+        (Some(own), Some(source)) => holds(source, PartId(own as u32)),
+        _ => Vec::new(),
+    };
+    let rounds: Vec<u32> = places.iter().map(|(round, ..)| *round).collect();
+    text.prose(&if rounds.first() != rounds.last() {
+        format!(
+            "Join the yarn at the first held stitch of {source}, where its chain ends. Round 1 goes into the held stitches in \
+             this order; the chain comes last and leads back to where the round began."
+        )
+    } else if held && around {
         format!(
             "Join the yarn at the first held stitch of {source}. Round 1 goes into the held stitches, then into the other \
              side of the chains above them, back to where it began."
@@ -412,6 +423,12 @@ fn finish(part: &Part, facts: &PartFacts, words: &Words<'_>, text: &mut Text<'_>
     text.prose(&match part.finish {
         Finish::DrawnShut => fill(prose.shut, &[("n", &facts.open.to_string())]),
         Finish::Open if part.flat => prose.fasten_off.to_owned(),
+        // All stitches are held for others: there is no rim.
+        Finish::Open if facts.open == 0 && words.language == Language::English => format!(
+            "Here the work divides, and no stitch is left over. Fasten the end of the chain to the next open stitch with a \
+             {slip} and fasten off; every held stitch stays open."
+        ),
+        Finish::Open if facts.open == 0 => prose.fasten_off.to_owned(),
         Finish::Open if left > 0 => {
             fill(prose.step_down, &[("n", &left.to_string()), ("st", stitches), ("slip", slip)])
         }

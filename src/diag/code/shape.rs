@@ -34,10 +34,12 @@ SurfaceBroken = "E1303", "the surface cannot be covered";
 JoinMissesStitches = "E1304", "no stitches to join a branch to";
 /// A part divides into others in a way that is not made.
 ///
-/// The last loop of a part can divide among two others, as a pair of trousers does.
+/// The last loop of a part can divide between two others, as a pair of trousers does: with `join = "split"` and `from = 1`
+/// in a shape file, or where a mesh forks evenly. Each of the two begins beside the middle of that loop, on its own side,
+/// and gets at least three of its stitches.
 ///
-/// Wrong: a palm that ends where four fingers begin
-/// Right: fingers that leave the side of the palm, or a palm that divides twice in turn
+/// Wrong: one leg with `join = "split"`, or three
+/// Right: two legs with `join = "split"`, either of which may divide again
 DividesOddly = "E1305", "a part divides in a way that is not made";
 /// The file is not TOML.
 ///

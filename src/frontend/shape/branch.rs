@@ -1,6 +1,7 @@
 //! `[[branch]]`: reading branches, finding what each grows from, and cutting them off at its surface.
 
 use super::fit;
+use super::pair;
 use super::short;
 use super::tube::{self, Places, Tube};
 use super::walk::{Number, Value, Walk};
@@ -25,7 +26,8 @@ const START_RADII: f64 = 1.2;
 /// it. A slit gives more, for it opens as it likes.
 const GIVE: f64 = 0.5;
 const SLIT_GIVE: f64 = 1.5;
-const JOINTS: &[(&str, Joint)] = &[("surface", Joint::Surface), ("opening", Joint::Opening)];
+const JOINTS: &[(&str, Joint)] =
+    &[("surface", Joint::Surface), ("opening", Joint::Opening), ("split", Joint::Split)];
 
 /// A branch as it stands in the file.
 #[derive(Debug)]
@@ -124,6 +126,10 @@ pub(super) fn grow(
     let mut tubes: Vec<shape::Tube> = Vec::new();
     let mut centers: BTreeMap<usize, (usize, Places)> = BTreeMap::new();
     for index in 0..nodes.len() {
+        if nodes.get(index).is_some_and(|node| node.joint == Joint::Split && node.tube.is_some()) {
+            divide(walk, &mut nodes, index, (gauge, gauge_span), &mut tubes, &mut centers)?;
+            continue;
+        }
         let Some(tube) = nodes.get_mut(index).and_then(|node| node.tube.take()) else { continue };
         let (sweep, places) = tube.sweep(RIM * gauge.height, walk)?;
         fit::check(walk, &sweep, &places, gauge, gauge_span).then_some(())?;
@@ -154,6 +160,66 @@ pub(super) fn grow(
         tubes.push(tube);
     }
     Some(tubes)
+}
+
+/// The two parts that one divides into, of which `index` is the first.
+fn divide(
+    walk: &mut Walk<'_>,
+    nodes: &mut [Node],
+    index: usize,
+    (gauge, gauge_span): (&Gauge, Span),
+    tubes: &mut Vec<shape::Tube>,
+    centers: &mut BTreeMap<usize, (usize, Places)>,
+) -> Option<()> {
+    let own = nodes.get(index)?.parent;
+    let pair: Vec<usize> =
+        (0..nodes.len()).filter(|i| nodes[*i].parent == own && nodes[*i].joint == Joint::Split).collect();
+    let home = root(nodes, own);
+    let (parent, axis) = centers.get(&home)?;
+    let (parent, name) = (*parent, nodes.get(index)?.name.clone());
+    let base = tubes.get(parent)?;
+    let mut odd = |span: Span, message: String, help: &str| {
+        walk.report(Diagnostic::new(Code::DividesOddly, message).at(span, "").help(help));
+        None
+    };
+    let early = pair.iter().filter_map(|i| nodes.get(*i)).find(|node| node.from.value < AT_END);
+    if let Some(node) = early {
+        let message = format!("`{}` is to divide `{}` before its end", node.name, base.name);
+        return odd(node.from.span, message, "give `from = 1`, or another `join`");
+    }
+    let from = nodes.get(index)?.from.span;
+    if base.end == End::Closed {
+        let message = format!("`{}` is closed at its end and cannot divide", base.name);
+        return odd(from, message, "give it `end = \"open\"`");
+    }
+    let &[one, other] = pair.as_slice() else {
+        let count = pair.len();
+        let message = format!("`{}` divides into {count} with `{name}`, not into two", base.name);
+        return odd(
+            from,
+            message,
+            "two branches of one part have `join = \"split\"`; either may divide again",
+        );
+    };
+    let at = place_on(nodes, nodes.get(one)?);
+    let mut legs = Vec::with_capacity(2);
+    for i in [one, other] {
+        let node = nodes.get_mut(i)?;
+        let (sweep, places) = node.tube.take()?.sweep(RIM * gauge.height, walk)?;
+        fit::check(walk, &sweep, &places, gauge, gauge_span).then_some(())?;
+        begins(walk, node, &places, axis, at, base)?;
+        legs.push(pair::Leg { name: node.name.clone(), sweep, places });
+    }
+    let legs: [pair::Leg; 2] = legs.try_into().ok()?;
+    let others = tubes.len();
+    for ((stack, leg), i) in pair::legs(walk, base, legs, gauge)?.into_iter().zip([one, other]) {
+        let ends = [leg.places.start, leg.places.end];
+        let tube = shape::Tube::new(&leg.name, Box::new(stack), ends).on(parent, Joint::Split);
+        apart(walk, nodes.get(i)?, &leg.places, &tube, tubes.get(..others)?)?;
+        centers.insert(i, (tubes.len(), leg.places));
+        tubes.push(tube);
+    }
+    Some(())
 }
 
 /// The parts with their parents, every parent before its branches.
@@ -254,7 +320,9 @@ fn fork(nodes: &mut [Node], index: usize) {
     };
     let next = (index + 1..nodes.len())
         .filter(|child| {
-            nodes.get(*child).is_some_and(|node| node.parent == index && node.from.value >= AT_END)
+            nodes.get(*child).is_some_and(|node| {
+                node.parent == index && node.from.value >= AT_END && node.joint != Joint::Split
+            })
         })
         .min_by(|a, b| turn(&nodes[*a]).total_cmp(&turn(&nodes[*b])));
     let Some(next) = next else { return };
@@ -397,7 +465,7 @@ fn explain(
 }
 
 /// A point in the unit of the file, as the file would have it.
-fn coordinates(walk: &Walk<'_>, point: DVec3) -> String {
+pub(super) fn coordinates(walk: &Walk<'_>, point: DVec3) -> String {
     let [x, y, z] = (point / walk.unit.mm()).to_array().map(|number| {
         let text = short(number);
         if text == "-0" { "0".to_owned() } else { text }

@@ -8,6 +8,7 @@ mod curve;
 mod fit;
 mod gauge;
 mod mesh;
+mod pair;
 mod section;
 mod tube;
 mod walk;

@@ -117,6 +117,15 @@ fn knit_group(
     // Wraps that would overload a needle are left out. Which these are shows when the needle is next worked, so the
     // group is knit again without them.
     let mut unwrapped: BTreeMap<usize, BTreeSet<u32>> = BTreeMap::new();
+    // What begins on finished stitches is told before anything that follows from it.
+    let parts: BTreeSet<u32> = group.iter().map(|piece| piece.part).collect();
+    for part in parts.iter().filter_map(|part| pattern.parts.get(*part as usize)) {
+        let mut found = Sink::new();
+        if begin::begin(pattern, part, options, &mut found).is_none() {
+            found.take().into_iter().for_each(|found| sink.push(found));
+            return None;
+        }
+    }
     let none = BTreeSet::new();
     loop {
         let mut bench = Bench::new(machine);

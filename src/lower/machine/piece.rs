@@ -280,6 +280,9 @@ impl<'m> Worker<'_, 'm> {
             .sum();
         self.bench.make_room(tube, growth + 2);
         for (index, leg) in legs.iter().enumerate() {
+            if leg.hold.is_some_and(|(loops, _)| loops as usize >= tube.open_loops()) {
+                return Err(Reason::NothingLeft);
+            }
             if let Some((loops, by)) = leg.hold {
                 self.yarns.settle(&mut self.bench.emitter);
                 // The limb nearest to the yarn goes on, so what waits lies at the far edge.

@@ -32,6 +32,8 @@ pub(super) enum Reason {
     FlatJoin,
     /// Chains with nothing before them.
     NoLoopBefore,
+    /// Every loop is set aside.
+    NothingLeft,
 }
 
 impl From<Stuck> for Reason {
@@ -120,7 +122,8 @@ pub(super) fn refuse(
         | Reason::Between(_)
         | Reason::FlatJoin
         | Reason::NoLoopBefore
-        | Reason::ThreeLimbs => limbs(reason, pattern, name),
+        | Reason::ThreeLimbs
+        | Reason::NothingLeft => limbs(reason, pattern, name),
     };
     let Origin { round, stitch, .. } = origin;
     let at = if stitch > 0 { format!(" at stitch {stitch}") } else { String::new() };
@@ -166,6 +169,11 @@ fn limbs(reason: &Reason, pattern: &Pattern, name: &str) -> (Finding, String, St
             Finding::NotKnittable,
             "chains at the beginning of the part cannot be knit".to_owned(),
             "begin the part with more chains, or with a stitch".to_owned(),
+        ),
+        Reason::NothingLeft => (
+            Finding::NotKnittable,
+            "every loop of the part is set aside, and none stays on the yarn".to_owned(),
+            "let the part go on as one of those that it is set aside for".to_owned(),
         ),
         Reason::ThreeLimbs => (
             Finding::LimbsInTheWay,

@@ -1,5 +1,6 @@
 //! From a mesh to tubes: ends, field, limbs, and a stack of level lines for each limb.
 
+use super::divide::Division;
 use super::ends::{Ends, Tip};
 use super::levels::Levels;
 use super::limb::{self, Root};
@@ -14,13 +15,14 @@ use crate::shape::solid::Solid;
 use crate::shape::stack::Stack;
 use crate::shape::{Attachment, End, Joint, ParametricSurface};
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// Shortest limb, in rows.
 const LEAST_ROWS: f64 = 3.0;
 /// Shortest stretch between two forks, in rows; below it the forks are one.
 const LEAST_TRUNK: f64 = 2.5;
 /// Level lines beside a fork are this share of the field's range away from it.
-const ASIDE: f64 = 1e-7;
+pub(super) const ASIDE: f64 = 1e-7;
 /// The ring nearest to a pole lies this far from it, in row heights.
 pub(super) const FIRST_RING: f64 = 0.4;
 /// Samples to a stitch width around.
@@ -83,6 +85,9 @@ pub struct Cut {
     pub dropped: Vec<DVec3>,
 }
 
+/// A limb to be stacked, the piece that divides into it with the line that it begins with, and its name.
+type Waiting = (usize, Option<(usize, Ring)>, String);
+
 impl Mesh {
     /// Cuts the mesh into tubes.
     pub fn cut(&self, plan: &Plan) -> Result<Cut, Fault> {
@@ -129,10 +134,18 @@ impl Mesh {
                 }
             };
             let tree = merge_forks(tree, &ways, LEAST_TRUNK * row);
-            let Some(fork) = tree.limbs.iter().find(|limb| tree.is_last_fork(limb)) else {
+            let levels = Levels { mesh, field: &field };
+            let divides =
+                |i: usize| Some((i, levels.division(&tree, tree.limbs.get(i)?, &ways, plan.gauge)?));
+            let divisions: BTreeMap<usize, Division> = tree.forks().filter_map(divides).collect();
+            let all_divide = tree.forks().all(|i| divisions.contains_key(&i));
+            let mut last: Vec<usize> = tree.forks().filter(|i| tree.is_last_fork(&tree.limbs[*i])).collect();
+            // What divides is cut up only where it hangs on something that does not.
+            last.sort_by_key(|i| (divisions.contains_key(i), *i));
+            let Some(fork) = last.first().filter(|_| !all_divide).map(|i| &tree.limbs[*i]) else {
                 all.extend(ends.others.iter().map(|tip| (mesh.middle(tip), tip.open)));
                 let mut pieces = Vec::new();
-                mesh.pieces(&tree, &field, &ends, &ways, plan, &mut pieces)?;
+                mesh.pieces(&tree, &field, &ends, &ways, (plan, &divisions), &mut pieces)?;
                 break pieces;
             };
             let (before, girth) = Levels { mesh, field: &field }.course(fork, &ways, false);
@@ -220,7 +233,7 @@ impl Mesh {
         field: &[f64],
         ends: &Ends,
         ways: &[Way],
-        plan: &Plan,
+        (plan, divisions): (&Plan, &BTreeMap<usize, Division>),
         pieces: &mut Vec<Piece>,
     ) -> Result<(), Fault> {
         let levels = Levels { mesh: self, field };
@@ -229,7 +242,7 @@ impl Mesh {
         let spacing = row.max(0.4 * self.mean_edge());
         let range = range(tree);
         // Depth first: the limb that goes on, then what branches off.
-        let mut open = vec![(tree.root, None, "trunk".to_owned())];
+        let mut open: Vec<Waiting> = vec![(tree.root, None, "trunk".to_owned())];
         let mut letters = ('A'..='Z').chain('a'..='z');
         while let Some((index, parent, name)) = open.pop() {
             let limb = &tree.limbs[index];
@@ -246,9 +259,12 @@ impl Mesh {
                 }
             } else {
                 low += ASIDE * range;
+                first = parent.as_ref().map(|(_, rim)| rim.clone());
             }
-            if !limb.last {
-                high -= ASIDE * range;
+            let division = divisions.get(&index);
+            if let Some(division) = division {
+                high = division.level;
+                last = Some(division.last.clone());
             } else if tip.open {
                 last = self.opening(&tip.ring, true);
             } else {
@@ -257,7 +273,7 @@ impl Mesh {
             }
             let mut rings =
                 levels.stack([low, high], &ways[limb.leaf].vertices, spacing, first, last.as_ref());
-            if let (None, Some(seam), Some(ring)) = (parent, plan.seam, rings.first_mut()) {
+            if let (None, Some(seam), Some(ring)) = (&parent, plan.seam, rings.first_mut()) {
                 *ring = ring.begun_near(seam);
             }
             let most = rings.iter().map(Ring::length).fold(0.0, f64::max);
@@ -266,33 +282,21 @@ impl Mesh {
             let Some(mut stack) = stack else {
                 return Err(Fault::NoRows { at: self.middle(tip) });
             };
-            stack.revolve(plan.gauge.width);
+            if parent.is_none() && division.is_none() {
+                stack.revolve(plan.gauge.width);
+            }
             let here = pieces.len();
-            let end = rings.last().cloned();
             let ends = stack.ends();
-            let attachment = parent.map(|parent| Attachment { parent, joint: Joint::Split });
+            let attachment = parent.map(|(parent, _)| Attachment { parent, joint: Joint::Split });
             let leap = stack.places().windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
             let even = leap * stack.length() < LEAP * spacing;
             pieces.push(Piece { name: name.clone(), surface: Box::new(stack), ends, attachment, even });
-            // The child that is most like the end of this limb goes on under its name.
-            let mut children: Vec<(usize, f64)> = limb
-                .children
-                .iter()
-                .map(|&child| {
-                    let way = &ways[tree.limbs[child].leaf].vertices;
-                    let ring = levels.line(tree.limbs[child].low + ASIDE * range, way);
-                    (child, ring.zip(end.as_ref()).map_or(0.0, |(ring, _)| ring.length()))
-                })
-                .collect();
-            children.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-            let mut next: Vec<(usize, Option<usize>, String)> = Vec::new();
-            for (rank, (child, _)) in children.iter().enumerate() {
-                let name = if rank == 0 {
-                    continued(&name)
-                } else {
-                    letters.next().map_or_else(|| format!("limb {child}"), |letter| format!("limb {letter}"))
-                };
-                next.push((*child, Some(here), name));
+            let rims = division.map(|division| division.rims.clone()).into_iter().flatten();
+            let mut next = Vec::new();
+            for (child, rim) in limb.children.iter().zip(rims) {
+                let name =
+                    letters.next().map_or_else(|| format!("limb {child}"), |letter| format!("limb {letter}"));
+                next.push((*child, Some((here, rim)), name));
             }
             open.extend(next.into_iter().rev());
         }
@@ -311,7 +315,7 @@ impl Mesh {
 impl Levels<'_> {
     /// Where a limb leads, and how thick it is: after it begins, or before it divides. The lines bulge toward the limbs on
     /// both sides of a fork, so it is looked at away from there.
-    fn course(&self, limb: &Limb, ways: &[Way], lower: bool) -> (DVec3, f64) {
+    pub(super) fn course(&self, limb: &Limb, ways: &[Way], lower: bool) -> (DVec3, f64) {
         let way = &ways[limb.leaf];
         let [low, high] = [way.down_to(limb.low), way.down_to(limb.high)];
         let line = |length: f64| self.line(way.level_at(length), &way.vertices);
@@ -353,7 +357,8 @@ fn far_apart(limbs: &[(DVec3, f64)]) -> bool {
 
 /// Lets the limbs that were cut off grow from the pieces again, the last one first.
 fn grow(mut pieces: Vec<Piece>, limbs: Vec<limb::Limb>, plan: &Plan) -> Result<Vec<Piece>, Fault> {
-    let mut letters = ('A'..='Z').chain('a'..='z');
+    let used = pieces.len() - 1;
+    let mut letters = ('A'..='Z').chain('a'..='z').skip(used);
     for (number, limb) in limbs.into_iter().rev().enumerate() {
         let at = limb.pole.or_else(|| limb.rings.last().map(Ring::center)).unwrap_or_default();
         let most = limb.rings.iter().map(Ring::length).fold(0.0, f64::max);
@@ -376,7 +381,9 @@ fn grow(mut pieces: Vec<Piece>, limbs: Vec<limb::Limb>, plan: &Plan) -> Result<V
         let size = plan.gauge.width.max(plan.gauge.height);
         let branch = Branch::leaving(stack, &solid, [plan.gauge.width, GIVE], LEAVES * size);
         let branch = branch.map_err(|_| Fault::Fork { at })?;
-        let name = letters.next().map_or_else(|| format!("limb {number}"), |letter| format!("limb {letter}"));
+        let name = letters
+            .next()
+            .map_or_else(|| format!("limb {}", used + number), |letter| format!("limb {letter}"));
         pieces.push(Piece {
             name,
             surface: Box::new(branch),
@@ -388,16 +395,8 @@ fn grow(mut pieces: Vec<Piece>, limbs: Vec<limb::Limb>, plan: &Plan) -> Result<V
     Ok(pieces)
 }
 
-/// "trunk", "trunk 2", "trunk 3".
-fn continued(name: &str) -> String {
-    match name.rsplit_once(' ').and_then(|(stem, number)| Some((stem, number.parse::<u32>().ok()?))) {
-        Some((stem, number)) => format!("{stem} {}", number + 1),
-        None => format!("{name} 2"),
-    }
-}
-
 /// The greatest value of the field.
-fn range(tree: &Tree) -> f64 {
+pub(super) fn range(tree: &Tree) -> f64 {
     tree.limbs.iter().map(|limb| limb.high).fold(0.0, f64::max)
 }
 

@@ -1,6 +1,7 @@
 //! Polygon meshes: a gate that repairs or refuses, a field of rows over the surface, and the tubes cut along it.
 
 mod cut;
+mod divide;
 mod ends;
 mod field;
 mod gate;

@@ -33,6 +33,23 @@ impl Tree {
     }
 }
 
+impl Tree {
+    /// The limbs that divide, upward from the root.
+    pub(super) fn forks(&self) -> impl Iterator<Item = usize> {
+        let mut open = vec![self.root];
+        std::iter::from_fn(move || {
+            loop {
+                let index = open.pop()?;
+                let children = &self.limbs.get(index)?.children;
+                open.extend(children);
+                if !children.is_empty() {
+                    return Some(index);
+                }
+            }
+        })
+    }
+}
+
 impl Mesh {
     /// The limbs of the object under a field: components of what lies above a level, as the level falls.
     pub(super) fn tree(&self, field: &[f64], ends: &Ends) -> Option<Tree> {
