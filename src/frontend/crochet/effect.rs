@@ -75,6 +75,9 @@ impl Effect {
 /// The effect of a block that begins in `direction`, with `bridge` loops taken by each turn.
 pub(crate) fn of(block: &Block, direction: &mut Direction, bridge: bool) -> Result<Effect, Fault> {
     let mut sum = Effect::default();
+    if block.is_empty() {
+        return Ok(sum);
+    }
     for (index, op) in block.ops().iter().enumerate() {
         let next = match op {
             Op::Work { stitch, times } if *direction == Direction::Forward => {

@@ -5,6 +5,7 @@ use super::lex::{self, At, Tok, Token};
 use super::packed::Packed;
 use super::parse::{Context, Fault, FaultKind, Tokens};
 use super::row;
+use super::scan;
 use super::syntax::{Clause, Content, Header, Line, Node, Nodes, Num, Pair, RowLine, Stump};
 use super::terms::Evidence;
 use super::words::{Words, fold_word};
@@ -86,7 +87,7 @@ pub(crate) fn parse(text: &str, language: Language) -> (Tree, Words) {
     let mut words = Words::new(language);
     let mut room = Room::default();
     // About what patterns need. Room that stays unused is never touched.
-    let ends = text.bytes().filter(|byte| *byte == b'\n').count();
+    let ends = scan::count(text.as_bytes(), b'\n');
     tree.lines.reserve_exact(ends + 1);
     tree.rows.reserve_exact(ends.min(text.len() / 16) + 1);
     room.nodes.get_mut().reserve_exact(text.len() / 16);
@@ -136,7 +137,7 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, usize)> {
     std::iter::from_fn(move || {
         let start = next?;
         let rest = bytes.get(start..)?;
-        if let Some(length) = line_end(rest) {
+        if let Some(length) = scan::find(rest, |byte| byte.wrapping_sub(b'\n') < 4) {
             let end = start + length;
             let two = bytes.get(end..end + 2) == Some(b"\r\n");
             next = Some(end + if two { 2 } else { 1 });
@@ -148,19 +149,10 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, usize)> {
     })
 }
 
-/// Where the first line of `bytes` ends.
-fn line_end(bytes: &[u8]) -> Option<usize> {
-    let ends = |byte: u8| byte.wrapping_sub(b'\n') < 4;
-    // A chunk at a time, without a branch a byte.
-    let (chunks, _) = bytes.as_chunks::<16>();
-    let whole = chunks.iter().take_while(|chunk| !chunk.iter().fold(false, |any, byte| any | ends(*byte)));
-    let from = whole.count() * 16;
-    Some(from + bytes.get(from..)?.iter().position(|byte| ends(*byte))?)
-}
-
 /// Where the content of a line ends, and where a `//` remark begins.
 fn remark(raw: &str) -> (usize, Option<usize>) {
-    let slashes = raw.find('/').and_then(|first| Some(first + raw.get(first..)?.find("//")?));
+    let slashes = scan::find(raw.as_bytes(), |byte| byte == b'/')
+        .and_then(|first| Some(first + raw.get(first..)?.find("//")?));
     match slashes {
         // A web address is no remark.
         Some(at) if !raw.get(..at).is_some_and(|before| before.ends_with(':')) => (at, Some(at)),

@@ -35,6 +35,7 @@ mod remarks;
 mod report;
 mod ring;
 mod row;
+mod scan;
 mod solve;
 mod stitches;
 mod syntax;

@@ -118,7 +118,9 @@ pub(crate) fn op(input: Tokens<'_>) -> Res<'_, Clause> {
     let (after, mut entry) = loop_word(rest);
     rest = after;
     entry = entry.or(before);
-    if n.is_none() {
+    if n.is_none() && !may_multiply(rest) {
+        rest.note(FaultKind::Expected("a number"));
+    } else if n.is_none() {
         match multiplier(rest) {
             Ok((after, Times::N(number) | Times::Rep(number))) => (rest, n) = (after, Some(number)),
             Ok(_) | Err(Err::Error(()) | Err::Incomplete(_)) => {
@@ -131,6 +133,17 @@ pub(crate) fn op(input: Tokens<'_>) -> Res<'_, Clause> {
     }
     let (rest, after) = loop_word(rest);
     op_tail(rest, Op { entry: after.or(entry), back, n, word, place: None, evenly: false, hue: None })
+}
+
+/// True where a multiplier or a number may stand.
+fn may_multiply(input: Tokens<'_>) -> bool {
+    match input.tok(0) {
+        Some(Tok::Int(_)) => true,
+        Some(Tok::Key(key)) => {
+            matches!(key, Key::Times | Key::Star | Key::For | Key::Rep | Key::Once | Key::Twice | Key::Thrice)
+        }
+        _ => false,
+    }
 }
 
 /// True where nothing can follow that belongs to the stitches.
