@@ -122,7 +122,7 @@ impl Html {
             body(&mut page);
             page.push_str("</section>\n");
         };
-        let chart = Svg { chart: self.chart, sc_symbol: self.sc_symbol, terms: self.terms };
+        let chart = Svg { chart: self.chart, sc_symbol: self.sc_symbol, terms: self.terms, ..Svg::default() };
         panel("pattern", "Pattern", &|page| {
             page.push_str("<p id=\"progress\" role=\"status\"></p>\n");
             pattern::write(program, self.terms, page);

@@ -33,7 +33,7 @@ pub trait Backend {
         _out: &mut dyn io::Write,
         _sink: &mut Sink<'_>,
     ) -> Result<(), Error> {
-        let what = "machine code holds no pattern; it becomes knitout or kcode".to_owned();
+        let what = "machine code holds no pattern; it becomes knitout, kcode or svg".to_owned();
         Err(Error::Unsupported { backend: "this target", what })
     }
 }

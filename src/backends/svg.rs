@@ -1,6 +1,8 @@
-//! Symbol charts as SVG: a spiral of rounds or an unrolled chart of rows, with a legend in US and UK terms.
+//! Charts as SVG: a spiral of rounds or an unrolled chart of rows, with a legend in US and UK terms, or the needles of a
+//! machine.
 
 mod legend;
+pub mod needles;
 pub(super) mod pen;
 mod round;
 mod rows;
@@ -13,8 +15,10 @@ use super::crochet::words::Words;
 use super::crochet::{Arrows, Language, Terms};
 use super::{Backend, Error, Format};
 use crate::diag::Sink;
+use crate::ir::machine::{Checked, Choice, Code};
 use crate::ir::verify::{PartFacts, Verified};
 use crate::ir::{Part, Start};
+use crate::lower;
 use pen::{Escaped, N};
 use serde::Deserialize;
 use sheet::Sheet;
@@ -27,7 +31,7 @@ pub const MAX_STITCHES: u64 = 100_000;
 pub const READABLE_ROUNDS: usize = 20;
 
 /// Options of the target `svg`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Svg {
     /// What kind of chart.
@@ -36,6 +40,12 @@ pub struct Svg {
     pub sc_symbol: ScSymbol,
     /// The vocabulary that the legend puts first; it always has both.
     pub terms: Terms,
+    /// A machine whose passes are drawn instead of the stitches, unless a kind of chart is asked for.
+    pub machine: Option<Choice>,
+    /// As for the target `knitout`.
+    pub approximate: bool,
+    /// As for the target `knitout`.
+    pub no_waste: bool,
 }
 
 /// A kind of chart.
@@ -63,7 +73,15 @@ pub enum ScSymbol {
 }
 
 impl Backend for Svg {
-    fn emit(&self, program: &Verified<'_>, out: &mut dyn Write, _: &mut Sink<'_>) -> Result<(), Error> {
+    fn emit(&self, program: &Verified<'_>, out: &mut dyn Write, sink: &mut Sink<'_>) -> Result<(), Error> {
+        if let (Some(Choice(machine)), Chart::Auto) = (&self.machine, self.chart) {
+            let options = lower::machine::Options { approximate: self.approximate, no_waste: self.no_waste };
+            let Some(lowered) = lower::machine::lower(program, machine, &options, sink) else {
+                let what = format!("`{}` cannot make it", machine.name);
+                return Err(Error::Unsupported { backend: Self::NAME, what });
+            };
+            return needles(&program.name, &lowered.code, Some(&lowered.origins), out);
+        }
         let drawn = drawn_stitches(program);
         if drawn > MAX_STITCHES {
             let what = format!("{drawn} stitches, a chart holds {MAX_STITCHES}");
@@ -72,13 +90,33 @@ impl Backend for Svg {
         out.write_all(self.document(program, true).as_bytes())?;
         Ok(())
     }
+
+    fn emit_code(&self, code: &Checked<'_>, out: &mut dyn Write, _: &mut Sink<'_>) -> Result<(), Error> {
+        needles(code.header("Machine").unwrap_or("program"), code, None, out)
+    }
+}
+
+/// Writes the chart of a machine program.
+fn needles(
+    name: &str,
+    code: &Code,
+    origins: Option<&[lower::machine::Origin]>,
+    out: &mut dyn Write,
+) -> Result<(), Error> {
+    let operations = code.ops().len();
+    if operations > needles::MAX_OPERATIONS {
+        let what = format!("{operations} operations, a chart holds {}", needles::MAX_OPERATIONS);
+        return Err(Error::Unsupported { backend: Svg::NAME, what });
+    }
+    out.write_all(needles::draw(name, code, origins).as_bytes())?;
+    Ok(())
 }
 
 impl Format for Svg {
     const NAME: &'static str = "svg";
     const EXTENSION: &'static str = "svg";
     const ABOUT: &'static str =
-        "symbol chart: a spiral of rounds, or rows with short rows as segments of their own";
+        "symbol chart: a spiral of rounds, or rows; with a machine or of its code, the needles of each pass";
 }
 
 /// Signs that the charts of a program have, skips included.
@@ -105,7 +143,7 @@ impl Svg {
     /// The whole drawing: the charts of all parts, one below the other, and the legend. In a page of its own it has a
     /// white ground and an id for each sign, inside another it takes that page's color, and signs that follow each other in
     /// a round have no id.
-    pub(super) fn document(self, program: &Verified<'_>, own_page: bool) -> String {
+    pub(super) fn document(&self, program: &Verified<'_>, own_page: bool) -> String {
         let many = program.pattern.parts.len() > 1;
         let mut body = String::new();
         let (mut width, mut below) = (0.0_f64, 16.0_f64);

@@ -88,6 +88,10 @@ pub(crate) fn route(reading: &Reading, targets: &[&'static Target]) -> Result<Ro
         for (target, table) in targets.iter().zip(&mut tables) {
             if target.keys().contains(&"machine") {
                 if let Profile::Hand(hand) = &machine.0 {
+                    // A chart is of stitches too.
+                    if target.keys().contains(&"chart") {
+                        continue;
+                    }
                     let message =
                         format!("`{}` crochets; {} is for knitting machines", hand.name, target.name);
                     let help = "write the pattern: --to crochet".to_owned();

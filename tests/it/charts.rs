@@ -5,9 +5,11 @@ use picot::backends::target;
 use picot::diag::{Sink, Sources};
 use picot::frontend::reader;
 use picot::ir::Kind;
+use picot::ir::machine::Machine;
 use picot::ir::pattern::Step;
 use picot::ir::verify::{Verified, verify};
 use picot::ir::{Program, Start};
+use picot::lower::machine::{Options, lower};
 use quick_xml::Reader;
 use quick_xml::events::Event;
 use std::collections::BTreeMap;
@@ -152,4 +154,62 @@ fn what_no_one_could_read_is_refused_with_the_limit() {
     let backend = target("svg").expect("listed").configure(toml::Table::new()).expect("defaults");
     let error = backend.emit(&verified, &mut Vec::new(), &mut Sink::new()).expect_err("too large");
     assert!(error.to_string().contains("240000 stitches, a chart holds 100000"), "{error}");
+}
+
+/// Passes that a machine chart shows, with the loops that each makes, repeats written out.
+fn unfolded(chart: &str, passes: u64) -> Vec<u64> {
+    let mut shown: Vec<(u64, u64)> = Vec::new();
+    let mut brackets: Vec<(usize, u64)> = Vec::new();
+    for line in chart.lines() {
+        if let Some((_, pass)) = line.split_once("<title>pass ") {
+            let (number, does) = pass.split_once(": ").expect("words");
+            let loops = does.trim_end_matches("</title>").split(", ").filter_map(|words| {
+                let (count, what) = words.split_once(' ')?;
+                ["knit", "tuck", "split"].contains(&what).then(|| count.parse::<u64>().expect("a count"))
+            });
+            shown.push((number.parse().expect("a number"), loops.sum()));
+        } else if let Some((_, times)) = line.split_once("font-weight=\"bold\">x ") {
+            let times = times.trim_end_matches("</text>").parse().expect("a number");
+            brackets.push((shown.len(), times));
+        }
+    }
+    let mut all = Vec::new();
+    for (at, (number, loops)) in shown.iter().enumerate() {
+        assert_eq!(*number, all.len() as u64 + 1, "the pass after {all:?}");
+        all.push(*loops);
+        if let Some((_, times)) = brackets.iter().find(|(end, _)| *end == at + 1) {
+            let next = shown.get(at + 1).map_or(passes + 1, |(number, _)| *number);
+            let length = ((next - number - 1) / (times - 1)) as usize;
+            let run = all[all.len() - length..].to_vec();
+            (1..*times).for_each(|_| all.extend(&run));
+        }
+    }
+    all
+}
+
+#[test]
+fn machine_charts_show_every_pass() {
+    for (text, folds) in [
+        ("Rnd 1: 6 sc in MR (6)\nRnd 2: 6 inc (12)\nRnd 3: 12 sc (12)\nRnds 4-30: 12 sc (12)\n", true),
+        (
+            "Rnd 1: 6 sc in MR (6)\nRnd 2: 6 inc (12)\nRnd 3: (sc, inc) x 6 (18)\nRnd 4: 6 dec, 6 sc (12)\n",
+            false,
+        ),
+    ] {
+        let program = written(text);
+        let verified = verify(&program, &mut Sink::new()).expect("workable");
+        for machine in ["swg091n2", "kniterate"] {
+            let chart = chart(&verified, &format!("machine = '{machine}'\nno-waste = true"));
+            assert!(signs(&chart).contains_key("legend"));
+            assert_eq!(chart.contains(">Rnds "), folds);
+            let options = Options { no_waste: true, ..Options::default() };
+            let machine = Machine::named(machine).expect("listed");
+            let lowered = lower(&verified, &machine, &options, &mut Sink::new()).expect("knittable");
+            let passes = unfolded(&chart, lowered.report.passes);
+            assert_eq!(passes.len() as u64, lowered.report.passes);
+            assert_eq!(passes.iter().sum::<u64>(), lowered.report.loops);
+        }
+        let rows = chart(&verified, "machine = 'kniterate'\nchart = 'rows'");
+        assert_eq!(signs(&rows), signs(&chart(&verified, "chart = 'rows'")));
+    }
 }

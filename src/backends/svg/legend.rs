@@ -28,7 +28,7 @@ pub(super) struct Legend {
 const LINE: f64 = 24.0;
 
 /// Draws the legend at a height, in as many columns as fit the width.
-pub(super) fn draw(options: Svg, program: &Verified<'_>, reading: Reading, width: f64, top: f64) -> Legend {
+pub(super) fn draw(options: &Svg, program: &Verified<'_>, reading: Reading, width: f64, top: f64) -> Legend {
     let uses = uses(program);
     let entries: Vec<(Stitch, String)> =
         uses.iter().map(|stitch| (*stitch, words(*stitch, options.terms))).collect();
