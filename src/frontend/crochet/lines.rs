@@ -87,7 +87,7 @@ pub(crate) fn parse(text: &str, language: Language) -> (Tree, Words) {
     let mut words = Words::new(language);
     let mut room = Room::default();
     // About what patterns need. Room that stays unused is never touched.
-    let ends = scan::count(text.as_bytes(), b'\n');
+    let ends = memchr::memchr_iter(b'\n', text.as_bytes()).count();
     tree.lines.reserve_exact(ends + 1);
     tree.rows.reserve_exact(ends.min(text.len() / 16) + 1);
     room.nodes.get_mut().reserve_exact(text.len() / 16);
@@ -151,8 +151,8 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, usize)> {
 
 /// Where the content of a line ends, and where a `//` remark begins.
 fn remark(raw: &str) -> (usize, Option<usize>) {
-    let slashes = scan::find(raw.as_bytes(), |byte| byte == b'/')
-        .and_then(|first| Some(first + raw.get(first..)?.find("//")?));
+    let slashes =
+        memchr::memchr(b'/', raw.as_bytes()).and_then(|first| Some(first + raw.get(first..)?.find("//")?));
     match slashes {
         // A web address is no remark.
         Some(at) if !raw.get(..at).is_some_and(|before| before.ends_with(':')) => (at, Some(at)),

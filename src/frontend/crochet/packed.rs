@@ -106,14 +106,14 @@ impl Table {
     #[inline]
     pub(crate) fn get(&self, word: &Packed) -> Option<Known> {
         let mut at = slot(word);
-        loop {
-            // There are far more slots than words, so the next empty one is near.
+        for _ in 0..SLOTS {
             match self.slots.get(at)? {
                 (Packed { low: 0, .. }, _) => return None,
                 (found, known) if found == word => return Some(*known),
                 _ => at = (at + 1) % SLOTS,
             }
         }
+        None
     }
 
     pub(crate) fn set(&mut self, word: &Packed, known: Known) {
