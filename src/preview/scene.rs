@@ -132,13 +132,15 @@ pub enum Refused {
     #[error("a picture is 1 to {} pixels wide and high; set `size` to WIDTHxHEIGHT", super::shade::MAX_SIDE)]
     PictureSize,
     /// Too wide a piece to predict its shape.
-    #[error("{stitches} stitches in rounds this wide are too many to predict a shape for")]
+    #[error(
+        "{stitches} stitches in rounds this wide would take more than 240 MB to predict; use a coarser gauge, leave parts out, or draw the chart (`svg`)"
+    )]
     TooWide {
         /// How many there are.
         stitches: u64,
     },
     /// The forces have no solution.
-    #[error("the shape cannot be predicted from this pattern")]
+    #[error("the shape cannot be predicted from this pattern; the chart (`svg`) shows its stitches")]
     NotPredicted,
     /// The pattern has nothing to draw.
     #[error("the pattern has no stitches to draw")]

@@ -1,5 +1,6 @@
 //! Scenes, their yarn and triangles, and predicted shapes.
 
+use super::charts::written;
 use super::snapshots::shapes;
 use picot::backends::target;
 use picot::diag::{Sink, Sources};
@@ -206,4 +207,23 @@ fn strands_of_yarn_hardly_pass_through_each_other() {
 fn too_fine_is_refused_with_the_option_that_helps() {
     let message = Refused::TooFine { triangles: 20_000_000 }.to_string();
     assert!(message.contains("12000000") && message.contains("detail"), "{message}");
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused_with_the_limit() {
+    let refused =
+        |program: &Program| scene(program).err().map(|refused| refused.to_string()).unwrap_or_default();
+    let mut holes = shape("ball");
+    let nodes = holes.graphs[0].nodes.len();
+    holes.graphs[0].nodes.truncate(nodes - 3);
+    let mut sink = Sink::new();
+    assert!(verify(&holes, &mut sink).is_none());
+    let told: Vec<&str> = sink.diagnostics().iter().map(|found| found.message.as_str()).collect();
+    assert_eq!(told, ["the pattern makes 432 loops, the graph has 429"]);
+    let tall = written("Rnd 1: ch 600, join\nRnds 2-5000: 600 sc (600)\n");
+    assert!(refused(&tall).contains("the limit is 300000"), "{}", refused(&tall));
+    let wide = written(
+        "Ch 2501\nRow 1: sc in 2nd ch from hook, 2499 sc (2500)\nRows 2-40: ch 1, turn, 2500 sc (2500)\n",
+    );
+    assert!(refused(&wide).contains("more than 240 MB"), "{}", refused(&wide));
 }
