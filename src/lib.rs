@@ -300,6 +300,13 @@ pub fn baseline(shape: &Shape, sink: &mut Sink<'_>) -> Option<Vec<Baseline>> {
     shape.tubes.iter().map(|tube| generate::capunaman::capunaman(tube, &shape.gauge, sink)).collect()
 }
 
+/// Settles baseline nets on their tubes by the relaxation that ends our own algorithm, for a comparison of like with like.
+pub fn settle_baseline(shape: &Shape, nets: &mut [Baseline], options: &Options) {
+    for (tube, net) in shape.tubes.iter().zip(nets) {
+        net.settle(tube, &shape.gauge, &options.generate);
+    }
+}
+
 /// Measures the baseline net of each tube by itself.
 pub fn measure_baseline_parts(shape: &Shape, nets: &[Baseline]) -> Vec<Measure> {
     let nets = shape.tubes.iter().zip(nets);

@@ -213,6 +213,9 @@ pub(crate) struct Measure {
     /// Who lays the stitches
     #[arg(long, value_name = "NAME", default_value = "picot")]
     pub(crate) algorithm: Algorithm,
+    /// Settle the stitches of the paper or the baseline on the surface first, as our own are
+    #[arg(long)]
+    pub(crate) relaxed: bool,
     /// Predict the shape from the pattern alone, and tell how far it is from the target
     #[arg(long)]
     pub(crate) predict: bool,

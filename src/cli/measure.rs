@@ -43,10 +43,12 @@ pub(crate) fn run(arguments: &Arguments, report: Report) -> Result<Status, Failu
     let mut sources = Sources::new(&files::load);
     let mut sink = Sink::with_observer(&watch);
     let source = files::open(&mut sources, &arguments.input, &stdin)?;
-    let input = picot::read(&source, reader, &routed.options, &mut sources, &mut sink);
+    let mut options = routed.options;
+    options.generate.settle = arguments.relaxed;
+    let input = picot::read(&source, reader, &options, &mut sources, &mut sink);
     let measured = match &input {
         Some(Input::Shape(shape)) => {
-            measure(shape, arguments.algorithm, arguments.predict, &routed.options, &mut sink)
+            measure(shape, arguments.algorithm, arguments.predict, &options, &mut sink)
                 .map(|measured| (shape, measured))
         }
         Some(other @ (Input::Program(_) | Input::Code(_))) => {
@@ -68,7 +70,7 @@ pub(crate) fn run(arguments: &Arguments, report: Report) -> Result<Status, Failu
     print(table(shape, arguments.algorithm, &measured, &times).as_bytes())
 }
 
-/// Lays stitches on a shape and measures them.
+/// Lays stitches on a shape and measures them; those of other algorithms are settled first where the options say so.
 pub(crate) fn measure(
     shape: &Shape,
     algorithm: Algorithm,
@@ -109,7 +111,10 @@ pub(crate) fn measure(
             })
         }
         Algorithm::Capunaman => {
-            let nets = picot::baseline(shape, sink)?;
+            let mut nets = picot::baseline(shape, sink)?;
+            if options.generate.settle {
+                picot::settle_baseline(shape, &mut nets, options);
+            }
             sink.stage("measure");
             Some(Measured {
                 measure: picot::measure_baseline(shape, &nets),

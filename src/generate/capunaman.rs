@@ -1,9 +1,12 @@
 //! The baseline of the paper's tables, after Çapunaman, Bingöl and Gürsoy (2017): rows of evenly spaced nodes on the
 //! helix, each joined to the nearest node of the next row. No short rows, no moving window, and its wales may cross.
 
+use super::options::Options;
+use super::relax::{Effort, Ends, Mark, Relaxer};
+use super::sheet::{Foot, Shaped, Sheet};
 use crate::diag::{Code, Diagnostic, Sink};
 use crate::ir::{Gauge, MAX_ROW, Node, NodeId};
-use crate::shape::{ParametricSurface, Tube};
+use crate::shape::{End, ParametricSurface, Tube};
 
 /// Places around a row where its distance to the next is taken.
 const AROUND: u32 = 20;
@@ -29,6 +32,47 @@ impl Baseline {
     /// Nodes of the first row.
     pub fn start(&self) -> usize {
         self.rows.get(1).copied().unwrap_or(self.nodes.len())
+    }
+
+    /// Lets all nodes but the first row of an open tube move on the surface until lengths and angles agree best, as the
+    /// stitches of our own algorithm do in the end. The wales stay.
+    pub fn settle(&mut self, tube: &Tube, gauge: &Gauge, options: &Options) {
+        let surface = &*tube.surface;
+        let mut sheet = Sheet::new(gauge);
+        for (id, node) in self.nodes.iter().enumerate() {
+            let jet = surface.jet(node.u, node.v);
+            let foot = Foot {
+                u: node.u,
+                v: node.tau,
+                point: jet.point,
+                du: jet.du,
+                dv: jet.dv,
+                along: jet.dv.normalize_or_zero(),
+            };
+            sheet.add(&foot, Shaped::No);
+            if id > 0 {
+                sheet.course(id as NodeId - 1, id as NodeId);
+            }
+        }
+        let mut before: Option<(NodeId, NodeId)> = None;
+        for &(base, top) in &self.wales {
+            let beside = before.filter(|&(left, last)| base - left <= 1 && last <= top && top - last <= 1);
+            sheet.wale(beside, base, top);
+            before = Some((base, top));
+        }
+        let free = if tube.start == End::Closed { 0 } else { self.start() };
+        Relaxer::default().relax(
+            surface,
+            &mut sheet,
+            Mark { nodes: free, ..Mark::default() },
+            0,
+            Effort { sweeps: options.sweeps, squareness: options.squareness },
+            Ends { range: [0.0, 1.0], ring: None, level: None },
+        );
+        for (id, node) in self.nodes.iter_mut().enumerate() {
+            let (u, tau) = (sheet.u[id], sheet.v[id]);
+            *node = Node { position: sheet.point[id], u, tau, v: tau.rem_euclid(1.0) };
+        }
     }
 
     /// Counts of shapings and crossings.

@@ -16,6 +16,7 @@ pub enum Preset {
 /// Options of the generator. The defaults serve every shape; the names follow the paper where it has one.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct Options {
     /// `fast` caps tries, window and sweeps.
     pub preset: Preset,
@@ -44,6 +45,9 @@ pub struct Options {
     /// The rules of the paper's own algorithm instead of ours; most other options then have no effect.
     #[serde(skip)]
     pub paper: bool,
+    /// The paper's algorithm with our own settling at its end.
+    #[serde(skip)]
+    pub settle: bool,
 }
 
 impl Default for Options {
@@ -62,6 +66,7 @@ impl Default for Options {
             tries: 4,
             symmetric: true,
             paper: false,
+            settle: false,
         }
     }
 }

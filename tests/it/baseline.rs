@@ -144,3 +144,29 @@ fn the_rules_of_the_paper_lay_short_rows_and_ours_fit_better() {
         assert!(theirs.skew.all.mean > 2.0 * ours.skew.all.mean, "{name} {width}");
     }
 }
+
+/// The comparison is fair only when the other algorithms may settle too, and settling helps each of them.
+#[test]
+fn settled_baselines_come_closer() {
+    let gauge = Gauge::new(2.0, 2.0);
+    for name in ["c", "d"] {
+        let tube = shape(name);
+        let net = capunaman(&tube, &gauge, &mut Sink::new()).expect("it can be laid");
+        let mut settled = net.clone();
+        settled.settle(&tube, &gauge, &Options::default());
+        let [before, after] = [&net, &settled].map(|net| {
+            let mut sampler = Sampler::new(gauge);
+            sampler.add(&tube, &Mesh::of_wales(&net.nodes, net.start(), &net.wales));
+            sampler.finish()
+        });
+        assert!(after.length_error.chord.mean_abs < before.length_error.chord.mean_abs, "{name}");
+        assert!(after.skew.all.mean < before.skew.all.mean, "{name}");
+        assert_eq!(net.wales, settled.wales);
+        assert_eq!(net.nodes.len(), settled.nodes.len());
+        let stays = |start: usize| {
+            let pairs = net.nodes.iter().zip(&settled.nodes).take(start);
+            pairs.fold(0.0, |far: f64, (a, b)| far.max(a.position.distance(b.position)))
+        };
+        assert!(stays(net.start()) < 1e-9 && stays(net.nodes.len()) > 0.1, "{name}");
+    }
+}

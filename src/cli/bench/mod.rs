@@ -28,6 +28,12 @@ struct Case {
     size: f64,
     picot: Measured,
     baseline: Measured,
+    /// Our stitches before they settle.
+    unsettled: Measured,
+    /// The baseline settled as ours are.
+    baseline_settled: Measured,
+    /// The rules of the paper's text, as laid and settled.
+    paper: [Measured; 2],
     /// Median time of each stage.
     stages: Vec<(&'static str, Duration)>,
     /// Median time of a whole run, from the text of the shape to the text of the pattern.
@@ -99,14 +105,26 @@ fn case(printed: &'static Printed, size: f64, runs: u32, report: Report) -> Resu
         picot::baseline(&shape, &mut sink).ok_or_else(|| broken(printed))?;
         baseline_times.push(begin.elapsed());
     }
-    let mut measured = |algorithm| {
+    let mut measured = |algorithm, settle| {
+        let mut options = options.clone();
+        options.generate.settle = settle;
+        if algorithm == Algorithm::Picot && !settle {
+            options.generate.sweeps = 0;
+        }
         measure::measure(&shape, algorithm, false, &options, &mut sink).ok_or_else(|| broken(printed))
     };
+    let mut both = |algorithm| Ok([measured(algorithm, false)?, measured(algorithm, true)?]);
+    let [baseline, baseline_settled] = both(Algorithm::Capunaman)?;
+    let paper = both(Algorithm::Paper)?;
+    let [unsettled, picot] = both(Algorithm::Picot)?;
     Ok(Case {
         printed,
         size,
-        picot: measured(Algorithm::Picot)?,
-        baseline: measured(Algorithm::Capunaman)?,
+        picot,
+        baseline,
+        baseline_settled,
+        paper,
+        unsettled,
         stages: stages.into_iter().map(|(stage, times)| (stage, median(times))).collect(),
         total: median(totals),
         baseline_time: median(baseline_times),
@@ -197,7 +215,10 @@ fn to_json(cases: &[Case], runs: u32, machine: &str) -> Result<Value, Failure> {
             "picot": { "measure": measure::facts(&case.picot)?, "time_ms": stages,
                 "generate_ms": milliseconds(case.generate()), "total_ms": milliseconds(case.total),
                 "us_per_stitch": case.per_stitch(case.total) },
-            "capunaman": { "measure": measure::facts(&case.baseline)?, "generate_ms": milliseconds(case.baseline_time) },
+            "capunaman": { "measure": measure::facts(&case.baseline)?, "generate_ms": milliseconds(case.baseline_time),
+                "relaxed": measure::facts(&case.baseline_settled)? },
+            "paper": { "measure": measure::facts(&case.paper[0])?, "relaxed": measure::facts(&case.paper[1])? },
+            "unrelaxed": measure::facts(&case.unsettled)?,
             "printed": { "length_error": by(&printed.length), "skew": by(&printed.skew),
                 "time_ms": { "capunaman": time(1.0, printed.time[0]), "proposed": time(1.0, printed.time[1]),
                     "wu": time(1000.0, printed.time[2]) } },

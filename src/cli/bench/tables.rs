@@ -85,11 +85,45 @@ pub(crate) fn paper(cases: &[Case]) -> String {
         );
     }
     text.push('\n');
+    alike(&mut text, cases);
     for note in NOTES {
         let _ = writeln!(text, "- {note}");
     }
     text.push_str("- Left of the bar: printed in the paper. Right of it: measured now, in the paper's convention; the last column is ours.\n");
     text
+}
+
+/// The algorithms as laid and as settled by the same relaxation, in our convention.
+fn alike(text: &mut String, cases: &[Case]) {
+    let _ = writeln!(
+        text,
+        "Like with like: mean |length error| / mean skew over all tiles, percent; as laid > settled by the same relaxation"
+    );
+    let _ = writeln!(
+        text,
+        "{:<6}{:>6} |{:>28}{:>28}{:>28}",
+        "", "cm", "Capunaman", "rules of the paper", "Picot"
+    );
+    for case in cases {
+        let cell = |measured: &super::Measured| {
+            let measure = &measured.measure;
+            format!(
+                "{:.1} / {:.1}",
+                100.0 * measure.length_error.chord.mean_abs,
+                100.0 * measure.skew.all.mean
+            )
+        };
+        let _ = write!(text, "{:<6}{:>6.2} |", case.printed.name, case.size / 10.0);
+        for [laid, settled] in [
+            [&case.baseline, &case.baseline_settled],
+            [&case.paper[0], &case.paper[1]],
+            [&case.unsettled, &case.picot],
+        ] {
+            let _ = write!(text, "{:>28}", format!("{} > {}", cell(laid), cell(settled)));
+        }
+        text.push('\n');
+    }
+    text.push('\n');
 }
 
 /// Numbers of one row: baseline and Picot in the paper's convention, and one number in ours.
