@@ -64,7 +64,7 @@ pub(crate) enum Command {
     Fmt(Fmt),
     /// Measure how close the stitches come to the shape
     Measure(Measure),
-    /// Write the surface of a shape: OBJ for modeling tools, or loops
+    /// Write the surface of a shape: OBJ for modeling tools, loops, or what is found in a mesh as a shape file
     Surface(Surface),
     /// Time the compiler; with --paper, set it beside the tables of the paper
     Bench(Bench),
@@ -167,12 +167,13 @@ pub(crate) struct Fmt {
 #[command(after_help = "\
 Examples:
   picot surface shapes/paper/d.toml -o d.obj
-  picot surface shapes/cactus.toml --part trunk -o trunk.loops")]
+  picot surface shapes/cactus.toml --part trunk -o trunk.loops
+  picot surface duck.obj --gauge 5mmx5mm -o duck.toml")]
 pub(crate) struct Surface {
     /// Shape file, mesh or loops; `-` is stdin
     #[arg(value_name = "INPUT")]
     pub(crate) input: String,
-    /// Output file: .obj, or .loops
+    /// Output file: .obj or .loops; .toml for what is found in a mesh
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: String,
     /// The part to write as loops, where there are several

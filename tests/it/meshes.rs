@@ -512,3 +512,56 @@ fn a_mesh_of_trousers_divides() {
     assert!(figures.length_error.chord.mean_abs < 0.05, "{:?}", figures.length_error.chord);
     assert!(figures.skew.all.mean < 0.12, "{:?}", figures.skew.all);
 }
+
+#[test]
+fn what_is_found_can_be_written_as_a_shape_file() {
+    use super::command::{Folder, read, run, stderr};
+    let folder = Folder::new();
+    let teddy = |p: DVec3| {
+        let body = capsule(p, v(0., 0., -12.), v(0., 0., 30.), 26.0);
+        let arm = |x: f64| capsule(p, v(x * 20., 0., 20.), v(x * 70., 0., 5.), 9.0);
+        union(union(body, arm(-1.0), 5.0), arm(1.0), 5.0)
+    };
+    let solid = Solid::level_set(teddy, v(-84., -30., -42.), v(84., 30., 60.), 4.0);
+    // One mesh twice, the second time in other axes.
+    for (name, unit, up) in [("duck.obj", "mm", "z"), ("duck.obj", "cm", "x")] {
+        let turned = |p: &DVec3| if up == "x" { v(p.z, p.x, p.y) / 10.0 } else { *p };
+        let mesh = Solid { points: solid.points.iter().map(turned).collect(), faces: solid.faces.clone() };
+        let (input, shape, text) =
+            (folder.file(name, mesh.obj()), folder.path("duck.toml"), folder.path("duck.txt"));
+        let from = ["--unit", unit, "--up", up, "--gauge", "5mmx5mm"];
+        run(&[&["surface", input.as_str(), "-o", &shape], &from[..]].concat()).code(0);
+        let file = String::from_utf8(read(&shape)).expect("text");
+        for line in [format!("unit = \"{unit}\""), format!("up = \"{up}\""), "file = \"duck.obj\"".to_owned()]
+        {
+            assert!(file.contains(&line), "{file}");
+        }
+        assert!(file.contains("field = \"harmonic\"") && file.contains("seam = ["), "{file}");
+        // `duck: 40 rounds, 900 stitches, about ..`
+        let stitches = |arguments: &[&str]| -> f64 {
+            let said = stderr(&run(arguments).code(0));
+            let (before, _) = said.split_once(" stitches").expect("a summary");
+            before.rsplit(' ').next().and_then(|count| count.parse().ok()).expect("a number")
+        };
+        let own = stitches(&[&["build", input.as_str(), "-o", &text], &from[..]].concat());
+        let again = stitches(&["build", &shape, "-o", &text]);
+        assert!((own / again - 1.0).abs() < 0.04, "{own} {again}");
+    }
+    run(&["surface", "shapes/ball.toml", "-o", &folder.path("ball.toml")]).code(2);
+    let input = folder.path("duck.obj");
+    run(&["surface", &input, "-o", &folder.path("x.toml")]).code(2);
+}
+
+#[test]
+fn many_small_triangles_are_joined_without_a_loss() {
+    let fine = Solid::ball(40.0, 160);
+    let plain = Solid::ball(40.0, 24);
+    let made = |solid: &Solid| {
+        let (shape, program) = pattern(shape_of(solid, 5.0), &options(5.0));
+        (rounds(&program), measure(&shape, &program).coverage)
+    };
+    let ((fine, covered), (plain, _)) = (made(&fine), made(&plain));
+    assert!((0.97..=1.03).contains(&covered), "{covered}");
+    let off: usize = fine.iter().zip(&plain).map(|(a, b)| a.abs_diff(*b)).sum();
+    assert!(fine.len() == plain.len() && off * 33 < plain.iter().sum(), "{fine:?} {plain:?}");
+}

@@ -3,9 +3,13 @@
 use super::super::unit::Unit;
 use super::{Up, Wish};
 use crate::diag::{Code, Diagnostic, Sink, Span};
+use crate::ir::Gauge;
 use crate::shape::mesh::{Cut, Fault, Field, Repairs};
 use glam::DVec3;
+use std::fmt::Write;
 
+/// Where along the trunk its seam is told: a pole is in no place around it.
+const SEAM: f64 = 0.01;
 const NAME_ENDS: &str = "name the ends: `start` and `poles` of a shape file with [mesh]";
 
 /// Unit and axes of a file.
@@ -180,6 +184,43 @@ impl Units {
         }
     }
 
+    /// A shape file with what the program chose.
+    pub(super) fn file(self, cut: &Cut, gauge: &Gauge, field: Field, file: &str) -> String {
+        let point = |p: DVec3| {
+            let p = self.up.back(p) / self.unit.mm();
+            format!("[{}, {}, {}]", number(p.x), number(p.y), number(p.z))
+        };
+        let word = |words: &[(&'static str, Up)]| {
+            words.iter().find(|(_, up)| *up == self.up).map_or("z", |(word, _)| *word)
+        };
+        let quoted = |text: &str| toml::Value::from(text).to_string();
+        let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
+        let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+        let mut text = format!(
+            "# The ends, the field and the seam that Picot found in {}. Change a line and build this file.\n",
+            name.replace(char::is_control, " ")
+        );
+        let _ = write!(
+            text,
+            "name = {}\nunit = \"mm\"\n\n[gauge]\nstitch = {{ width = {}, height = {} }}\n\n[mesh]\nfile = {}\nunit = \"{}\"\nup = \"{}\"\nfield = \"{}\"\n",
+            quoted(stem),
+            number(gauge.width),
+            number(gauge.height),
+            quoted(file),
+            self.unit.word(),
+            word(Up::WORDS),
+            word_of(field),
+        );
+        if let Some((start, rest)) = cut.ends.split_first() {
+            let poles: Vec<String> = rest.iter().map(|(p, _)| point(*p)).collect();
+            let _ = write!(text, "start = {}\npoles = [{}]\n", point(start.0), poles.join(", "));
+        }
+        if let Some(trunk) = cut.pieces.first() {
+            let _ = writeln!(text, "seam = {}", point(trunk.surface.point(SEAM, 0.0)));
+        }
+        text
+    }
+
     /// Says what the program chose, in words that a shape file takes.
     pub(super) fn chosen(self, cut: &Cut, wish: &Wish, home: Span, sink: &mut Sink<'_>) {
         let point = |p: DVec3| {
@@ -190,10 +231,7 @@ impl Units {
         if let (Some((start, rest)), true) =
             (ends.split_first(), wish.curve.is_empty() && (wish.poles.is_empty() || wish.start.is_none()))
         {
-            let field = match wish.field {
-                Field::Harmonic => "harmonic",
-                Field::Geodesic => "geodesic",
-            };
+            let field = word_of(wish.field);
             let message = format!(
                 "rows run from start = {start} to poles = [{}] by field = \"{field}\": {}",
                 rest.join(", "),
@@ -214,6 +252,14 @@ impl Units {
             let help = "use a smaller stitch to keep it";
             sink.push(Diagnostic::new(Code::LimbDropped, message).at(home, "").help(help));
         }
+    }
+}
+
+/// The word of a field.
+fn word_of(field: Field) -> &'static str {
+    match field {
+        Field::Harmonic => "harmonic",
+        Field::Geodesic => "geodesic",
     }
 }
 

@@ -198,16 +198,48 @@ pub(super) fn soup(
     }
 }
 
+/// The text of a shape file that says of a mesh what is found by itself: the field, its ends, and where rounds begin.
+/// `file` is the name of the mesh in it. `None` with the reason in the sink when no tubes can be made.
+pub fn shape_file(
+    source: &Source,
+    reader: &Reader,
+    reading: Reading,
+    gauge: Gauge,
+    file: &str,
+    sources: &mut Sources<'_>,
+    sink: &mut Sink<'_>,
+) -> Option<String> {
+    let home = source.span(0..0);
+    let soup = soup(source, reader, sources, sink)?;
+    let (unit, up) = assumed(&soup, reader, reading, home, sink);
+    let wish = Wish::default();
+    let cut = cut(soup, gauge, (unit, up), &wish, home, sink)?;
+    Some(explain::Units { unit, up }.file(&cut, &gauge, wish.field, file))
+}
+
 /// A shape of tubes from triangles; `home` is what faults of the mesh point at.
 pub(super) fn shape(
     soup: Soup,
     name: String,
     gauge: Gauge,
-    (unit, up): (Unit, Up),
+    axes: (Unit, Up),
     wish: &Wish,
     home: Span,
     sink: &mut Sink<'_>,
 ) -> Option<Shape> {
+    let cut = cut(soup, gauge, axes, wish, home, sink)?;
+    Some(Shape { name, gauge, tubes: tubes(cut) })
+}
+
+/// The mesh in tubes, with notes of what was chosen.
+fn cut(
+    soup: Soup,
+    gauge: Gauge,
+    (unit, up): (Unit, Up),
+    wish: &Wish,
+    home: Span,
+    sink: &mut Sink<'_>,
+) -> Option<Cut> {
     sink.stage("mesh");
     let units = explain::Units { unit, up };
     let (mut mesh, repairs) = match Mesh::new(soup) {
@@ -241,7 +273,11 @@ pub(super) fn shape(
         .iter()
         .filter_map(|segment| Bezier::new(&segment.iter().map(|p| inward(*p)).collect::<Vec<_>>()))
         .collect();
-    let cut = if curve.is_empty() { mesh.cut(&plan) } else { mesh.slice(&curve, &plan) };
+    let cut = if curve.is_empty() {
+        mesh.cut(&plan, |done, all| sink.step(done, all))
+    } else {
+        mesh.slice(&curve, &plan)
+    };
     let cut = match cut {
         Ok(cut) => cut,
         Err(fault) => {
@@ -250,7 +286,7 @@ pub(super) fn shape(
         }
     };
     units.chosen(&cut, wish, home, sink);
-    Some(Shape { name, gauge, tubes: tubes(cut) })
+    Some(cut)
 }
 
 fn tubes(cut: Cut) -> Vec<Tube> {

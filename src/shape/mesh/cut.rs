@@ -44,6 +44,10 @@ const LEAVES: f64 = 0.8;
 /// How far (stitches) the first row of a limb may lie off the rim in which it meets its parent.
 const GIVE: f64 = 1.0;
 
+/// Meshes of more triangles than this are made coarser where their edges are shorter than this share of a stitch.
+const MANY: usize = 20_000;
+const COARSE: f64 = 0.8;
+
 /// How a mesh is cut into tubes; lengths are those of the mesh, millimeters by now.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -89,9 +93,20 @@ pub struct Cut {
 type Waiting = (usize, Option<(usize, Ring)>, String);
 
 impl Mesh {
-    /// Cuts the mesh into tubes.
-    pub fn cut(&self, plan: &Plan) -> Result<Cut, Fault> {
+    /// Cuts the mesh into tubes. `progress` hears of steps done and of all there are, as far as they are known.
+    pub fn cut(&self, plan: &Plan, mut progress: impl FnMut(u64, u64)) -> Result<Cut, Fault> {
         self.holes(plan)?;
+        let length = COARSE * plan.gauge.height.min(plan.gauge.width);
+        if self.faces.len() > MANY && self.mean_edge() < 0.7 * length {
+            // The first half is the way to fewer triangles.
+            if let Some(coarse) = self.coarse(length, |done, all| progress(done, 2 * all)) {
+                return coarse.cut_whole(plan, |done, all| progress(all + done, 2 * all));
+            }
+        }
+        self.cut_whole(plan, progress)
+    }
+
+    fn cut_whole(&self, plan: &Plan, mut progress: impl FnMut(u64, u64)) -> Result<Cut, Fault> {
         // The true field lies best; on bad triangles it has eddies in which limbs are lost.
         let sound = |cut: &Cut| {
             let area = |piece: &Piece| area(&*piece.surface, SAMPLES[0], SAMPLES[1]);
@@ -99,15 +114,20 @@ impl Mesh {
             let even = cut.pieces.len() == 1 || cut.pieces.iter().all(|piece| piece.even);
             even && cut.pieces.iter().map(area).sum::<f64>() < MOST_AREA * self.area()
         };
-        let fault = match self.cut_along(plan, false) {
+        let fault = match self.cut_along(plan, false, &mut progress) {
             Ok(cut) if sound(&cut) && cut.pieces.iter().all(|piece| piece.even) => return Ok(cut),
             Ok(cut) => Fault::Fork { at: cut.ends.last().map_or(DVec3::ZERO, |end| end.0) },
             Err(fault) => fault,
         };
-        self.cut_along(plan, true).ok().filter(sound).ok_or(fault)
+        self.cut_along(plan, true, &mut progress).ok().filter(sound).ok_or(fault)
     }
 
-    fn cut_along(&self, plan: &Plan, strict: bool) -> Result<Cut, Fault> {
+    fn cut_along(
+        &self,
+        plan: &Plan,
+        strict: bool,
+        progress: &mut impl FnMut(u64, u64),
+    ) -> Result<Cut, Fault> {
         let row = plan.gauge.height;
         let mut ends = Ends::find(self, row, plan.start, &plan.poles);
         ends.strict = strict;
@@ -120,6 +140,7 @@ impl Mesh {
         let mut rest: Option<Self> = None;
         let pieces = loop {
             let mesh = rest.as_ref().unwrap_or(self);
+            progress(limbs.len() as u64, (limbs.len() + ends.others.len()) as u64);
             let (field, tree, ways) = loop {
                 let field = mesh.flow(plan, &mut ends);
                 let tree = mesh.tree(&field, &ends).ok_or(Fault::NoEnds { at: mesh.middle(&ends.start) })?;

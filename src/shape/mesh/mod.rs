@@ -1,5 +1,6 @@
 //! Polygon meshes: a gate that repairs or refuses, a field of rows over the surface, and the tubes cut along it.
 
+mod coarse;
 mod cut;
 mod divide;
 mod ends;
