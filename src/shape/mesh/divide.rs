@@ -12,14 +12,15 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 /// Limbs turn from the direction before by at most this (radians), and by at most this much more than each other.
-const MOST_TURN: f64 = 0.8;
-const MOST_APART: f64 = 0.35;
-/// Least girth of the thinner limb against the thicker one, and of both together against what divides.
+const MOST_TURN: f64 = 0.6;
+const MOST_APART: f64 = 0.25;
+/// Least girth of the thinner limb against the thicker one; and least and greatest girth of both together against what
+/// divides, for they share it: limbs that are each as thick leave the side of each other.
 const ALIKE: f64 = 0.75;
-const TOGETHER: f64 = 0.95;
-/// Length of the crotch in stitches, and as a share of the girth of what divides.
+const TOGETHER: [f64; 2] = [0.95, 1.5];
+/// Length of the crotch in stitches; and its least and greatest share of the girth of what divides.
 const CROTCH: f64 = 5.0;
-const CROTCH_SHARE: f64 = 0.05;
+const CROTCH_SHARE: [f64; 2] = [0.05, 0.12];
 /// Lines at which the crotch is measured.
 const LINES: u32 = 48;
 
@@ -44,11 +45,10 @@ impl Levels<'_> {
         let turn = |to: DVec3| atan2(before.cross(to).length(), before.dot(to));
         let (turns, girths) = ([turn(first), turn(second)], [thick, thin]);
         let (thin, thick) = (thick.min(thin), thick.max(thin));
-        // Shorter than it is wide, a body has no direction of its own.
         if turns.iter().any(|turn| *turn > MOST_TURN)
             || (turns[0] - turns[1]).abs() > MOST_APART
             || thin < ALIKE * thick
-            || girths.iter().sum::<f64>() < TOGETHER * girth
+            || !(TOGETHER[0]..=TOGETHER[1]).contains(&(girths.iter().sum::<f64>() / girth))
         {
             return None;
         }
@@ -56,7 +56,7 @@ impl Levels<'_> {
         let lines = children
             .map(|child| self.line(child.low + ASIDE * super::cut::range(tree), &ways[child.leaf].vertices));
         let [Some(first), Some(second)] = lines else { return None };
-        let goal = (CROTCH * gauge.width).max(CROTCH_SHARE * girth);
+        let goal = (CROTCH * gauge.width).clamp(CROTCH_SHARE[0] * girth, CROTCH_SHARE[1] * girth);
         let from = way.down_to(fork.high);
         let most = (0.5 * (way.down_to(fork.low) - from)).min(girth / PI);
         (1..=LINES).find_map(|k| {
