@@ -1,8 +1,7 @@
 //! Previews: pictures and predicted shapes of tubes of growing size.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use picot::backends::html::MAX_STITCHES;
-use picot::backends::target;
+use picot::backends::{html, svg, target};
 use picot::diag::{Sink, Sources};
 use picot::frontend::reader;
 use picot::ir::Program;
@@ -31,8 +30,13 @@ fn outputs(criterion: &mut Criterion) {
         let program = tube(stitches);
         let verified = verify(&program, &mut Sink::new()).expect("workable");
         for name in ["png", "svg", "gltf", "stl", "html"] {
-            // A page has a limit, below which it stays usable.
-            if name == "html" && u64::from(stitches) > MAX_STITCHES {
+            // Pages and charts have limits, below which they stay usable.
+            let most = match name {
+                "html" => html::MAX_STITCHES,
+                "svg" => svg::MAX_STITCHES,
+                _ => u64::MAX,
+            };
+            if verified.facts().stitches(&verified) > most {
                 continue;
             }
             let backend = target(name).expect("listed").configure(toml::Table::new()).expect("defaults");
