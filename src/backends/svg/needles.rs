@@ -5,7 +5,7 @@
 
 use super::pen::{Escaped, N, P, Path};
 use super::sheet::ACCENT;
-use crate::ir::machine::passes::{Job, Passes};
+use crate::ir::machine::passes::{Job, Passes, job};
 use crate::ir::machine::{Bed, CarrierSet, Code, Direction, Instruction, Needle, Rack};
 use crate::lower::machine::Origin;
 use std::fmt::Write as _;
@@ -130,7 +130,11 @@ fn passes(code: &Code, origins: Option<&[Origin]>) -> Vec<Placed> {
                         .filter(|origin| origin.round > 0)
                         .map(|origin| (origin.part, origin.round));
                     let (notes, heads) = (std::mem::take(&mut notes), std::mem::take(&mut heads));
-                    let pass = Pass { job: job(op), rack, ops: Vec::new(), notes };
+                    // Without yarn there is no direction to show.
+                    let job = job(op)
+                        .map(|(job, _)| job)
+                        .filter(|job| !matches!(job, Job::Form(_, set) if set.is_empty()));
+                    let pass = Pass { job, rack, ops: Vec::new(), notes };
                     found.push(Placed { pass, number, heads, round });
                 }
                 if let Some(placed) = found.last_mut() {
@@ -144,34 +148,6 @@ fn passes(code: &Code, origins: Option<&[Origin]>) -> Vec<Placed> {
         found.push(Placed { pass, number, heads, round: None });
     }
     found
-}
-
-/// What an operation that moves yarn or loops does.
-fn job(op: &Instruction) -> Option<Job> {
-    match *op {
-        Instruction::Knit(direction, _, set)
-        | Instruction::Tuck(direction, _, set)
-        | Instruction::Split(direction, _, _, set)
-        | Instruction::Miss(direction, _, set)
-            if !set.is_empty() =>
-        {
-            Some(Job::Form(direction, set))
-        }
-        Instruction::Xfer(from, _) | Instruction::Split(_, from, _, _) => Some(Job::Transfer(from.bed)),
-        Instruction::Drop(_) | Instruction::Knit(..) => Some(Job::Drop),
-        Instruction::In(_)
-        | Instruction::InHook(_)
-        | Instruction::ReleaseHook(_)
-        | Instruction::Out(_)
-        | Instruction::OutHook(_)
-        | Instruction::Stitch(..)
-        | Instruction::Rack(_)
-        | Instruction::Tuck(..)
-        | Instruction::Amiss(_)
-        | Instruction::Miss(..)
-        | Instruction::Pause(_)
-        | Instruction::Extension(_) => None,
-    }
 }
 
 fn carriers(code: &Code, set: &CarrierSet) -> String {

@@ -13,6 +13,31 @@ pub enum Job {
     Drop,
 }
 
+/// What an instruction that a pass can do does there, and its needle.
+pub fn job(instruction: &Instruction) -> Option<(Job, Needle)> {
+    let none = CarrierSet::default();
+    Some(match *instruction {
+        Instruction::Knit(_, needle, carriers) if carriers.is_empty() => (Job::Drop, needle),
+        Instruction::Split(_, from, _, carriers) if carriers.is_empty() => (Job::Transfer(from.bed), from),
+        Instruction::Knit(direction, needle, carriers)
+        | Instruction::Tuck(direction, needle, carriers)
+        | Instruction::Miss(direction, needle, carriers)
+        | Instruction::Split(direction, needle, _, carriers) => (Job::Form(direction, carriers), needle),
+        Instruction::Xfer(from, _) => (Job::Transfer(from.bed), from),
+        Instruction::Drop(needle) => (Job::Drop, needle),
+        Instruction::Amiss(needle) => (Job::Form(Direction::Plus, none), needle),
+        Instruction::In(_)
+        | Instruction::InHook(_)
+        | Instruction::ReleaseHook(_)
+        | Instruction::Out(_)
+        | Instruction::OutHook(_)
+        | Instruction::Stitch(..)
+        | Instruction::Rack(_)
+        | Instruction::Pause(_)
+        | Instruction::Extension(_) => return None,
+    })
+}
+
 /// Merges instructions into passes: same job and rack, needles in monotone order and none twice.
 #[derive(Debug, Default)]
 pub struct Passes {
@@ -26,31 +51,9 @@ pub struct Passes {
 impl Passes {
     /// Takes the next instruction; true when it opens a new pass.
     pub fn add(&mut self, instruction: &Instruction, rack: Rack) -> bool {
-        let none = CarrierSet::default();
-        let (job, needle) = match *instruction {
-            Instruction::Knit(_, needle, carriers) if carriers.is_empty() => (Job::Drop, needle),
-            Instruction::Split(_, from, _, carriers) if carriers.is_empty() => {
-                (Job::Transfer(from.bed), from)
-            }
-            Instruction::Knit(direction, needle, carriers)
-            | Instruction::Tuck(direction, needle, carriers)
-            | Instruction::Miss(direction, needle, carriers)
-            | Instruction::Split(direction, needle, _, carriers) => (Job::Form(direction, carriers), needle),
-            Instruction::Xfer(from, _) => (Job::Transfer(from.bed), from),
-            Instruction::Drop(needle) => (Job::Drop, needle),
-            Instruction::Amiss(needle) => (Job::Form(Direction::Plus, none), needle),
-            Instruction::In(_)
-            | Instruction::InHook(_)
-            | Instruction::ReleaseHook(_)
-            | Instruction::Out(_)
-            | Instruction::OutHook(_)
-            | Instruction::Stitch(..)
-            | Instruction::Rack(_)
-            | Instruction::Pause(_)
-            | Instruction::Extension(_) => {
-                self.current = None;
-                return false;
-            }
+        let Some((job, needle)) = job(instruction) else {
+            self.current = None;
+            return false;
         };
         self.place(job, needle, rack)
     }
