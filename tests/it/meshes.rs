@@ -87,6 +87,14 @@ fn bent(p: DVec3) -> f64 {
     arc.fold(legs, f64::min) - 15.0
 }
 
+/// The pattern of a shape covers it, and its lengths are about right.
+fn covers(name: &str, shape: Shape, size: f64) {
+    let (shape, program) = pattern(shape, &options(size));
+    let figures = measure(&shape, &program);
+    assert!((0.97..=1.03).contains(&figures.coverage), "{name}: {}", figures.coverage);
+    assert!(figures.length_error.chord.mean_abs < 0.07, "{name}: {:?}", figures.length_error.chord);
+}
+
 #[test]
 fn single_tubes_become_patterns_that_cover_them() {
     let cases = [
@@ -101,14 +109,7 @@ fn single_tubes_become_patterns_that_cover_them() {
     for (name, solid) in cases {
         let shape = shape_of(&solid, 5.0);
         assert_eq!(shape.tubes.len(), 1, "{name}");
-        let (shape, program) = pattern(shape, &options(5.0));
-        let figures = measure(&shape, &program);
-        println!(
-            "{name}: {} {} {}",
-            figures.coverage, figures.length_error.chord.mean_abs, figures.skew.all.mean
-        );
-        assert!((0.97..=1.03).contains(&figures.coverage), "{name}: {}", figures.coverage);
-        assert!(figures.length_error.chord.mean_abs < 0.07, "{name}: {:?}", figures.length_error.chord);
+        covers(name, shape, 5.0);
     }
 }
 
@@ -212,14 +213,7 @@ fn limbs_are_found() {
         let names = shape.tubes.iter().map(|tube| tube.name.as_str()).collect::<Vec<_>>();
         assert_eq!(shape.tubes.len(), tubes, "{name}: {names:?}");
         assert!(shape.tubes.iter().skip(1).all(|tube| tube.attachment.is_some()), "{name}");
-        let (shape, program) = pattern(shape, &options(4.0));
-        let figures = measure(&shape, &program);
-        println!(
-            "{name}: {} {} {}",
-            figures.coverage, figures.length_error.chord.mean_abs, figures.skew.all.mean
-        );
-        assert!((0.97..=1.03).contains(&figures.coverage), "{name}: {}", figures.coverage);
-        assert!(figures.length_error.chord.mean_abs < 0.07, "{name}: {:?}", figures.length_error.chord);
+        covers(name, shape, 4.0);
     }
 }
 
