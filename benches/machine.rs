@@ -5,7 +5,7 @@ use picot::backends::knitout;
 use picot::diag::{Sink, Sources};
 use picot::frontend;
 use picot::ir::machine::{Code, Machine, execute};
-use picot::ir::{Block, Finish, Op, Part, Pattern, Program, Row, Start, Stitch};
+use picot::ir::{Block, Finish, Maker, Op, Part, Pattern, Program, Row, Start, Stitch};
 use picot::lower::machine::{Options, lower};
 use std::hint::black_box;
 
@@ -35,6 +35,7 @@ fn tube(stitches: u32) -> Program {
     Program {
         name: "tube".to_owned(),
         gauge: None,
+        maker: Maker::default(),
         colors: Vec::new(),
         pattern: Pattern { parts: vec![part] },
         graphs: Vec::new(),

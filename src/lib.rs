@@ -56,12 +56,12 @@ use frontend::mesh;
 use frontend::{Input, Reader};
 use generate::capunaman::Baseline;
 use ir::verify::Verified;
-use ir::{Finish, Gauge, Graph, Part, PartId, Pattern, Program, Start};
+use ir::{Finish, Gauge, Graph, Hand, Maker, Part, PartId, Pattern, Program, Start};
 use lower::divide::{Parent, Share};
 use metrics::{Measure, Mesh, Sampler};
 use preview::{Refused, predict};
 use rayon::prelude::*;
-use shape::{Attachment, End, Joint, Shape, Tube};
+use shape::{Attachment, End, Joint, Mirrored, Shape, Tube};
 
 /// What the stages before printing may be told.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -141,9 +141,11 @@ pub fn read(
 
 /// From a shape to a program: a graph and a part for each tube, folded by the passes.
 pub fn program(shape: &Shape, options: &Options, sink: &mut Sink<'_>) -> Option<Program> {
+    let options = &Options { generate: options.generate.granting(&shape.wishes), ..options.clone() };
     let mut program = Program {
         name: shape.name.clone(),
         gauge: Some(shape.gauge),
+        maker: options.generate.maker(),
         colors: Vec::new(),
         pattern: Pattern::default(),
         graphs: Vec::new(),
@@ -265,23 +267,34 @@ fn divide(
 /// Measures the graphs of a program against the shape that they were generated from.
 pub fn measure(shape: &Shape, program: &Program) -> Measure {
     let mut sampler = Sampler::new(shape.gauge);
-    for ((index, tube), graph) in shape.tubes.iter().enumerate().zip(&program.graphs) {
-        sampler.add(tube, &net(shape, index, graph));
-        sampler.count(graph);
+    for (index, graph) in program.graphs.iter().enumerate() {
+        sample(shape, index, graph, program.maker, &mut sampler);
     }
     sampler.finish()
 }
 
+/// Samples one tube; as its maker works it, so that all of it is told as for right-handed work.
+fn sample(shape: &Shape, index: usize, graph: &Graph, maker: Maker, sampler: &mut Sampler) {
+    let Some(tube) = shape.tubes.get(index) else { return };
+    let ends = [tube.start, tube.end];
+    match maker.hand {
+        Hand::Right => sampler.add_on(&*tube.surface, ends, &net(shape, index, graph)),
+        Hand::Left => {
+            let mirrored = graph.clone().mirrored();
+            sampler.add_on(&Mirrored(&*tube.surface), ends, &net(shape, index, &mirrored));
+        }
+    }
+    sampler.count(graph);
+}
+
 /// Measures each part by itself, in the order of the tubes.
 pub fn measure_parts(shape: &Shape, program: &Program) -> Vec<Measure> {
-    let parts = shape.tubes.iter().enumerate().zip(&program.graphs);
-    let measure = |((index, tube), graph): ((usize, &Tube), &Graph)| {
+    let measure = |(index, graph): (usize, &Graph)| {
         let mut sampler = Sampler::new(shape.gauge);
-        sampler.add(tube, &net(shape, index, graph));
-        sampler.count(graph);
+        sample(shape, index, graph, program.maker, &mut sampler);
         sampler.finish()
     };
-    parts.map(measure).collect()
+    program.graphs.iter().enumerate().map(measure).collect()
 }
 
 /// The net of one tube; where a tube divides, rows do not end as a helix does.

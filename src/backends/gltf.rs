@@ -4,8 +4,8 @@ use super::crochet::words::Words;
 use super::crochet::{Arrows, Terms};
 use super::{Backend, Error, Format};
 use crate::diag::Sink;
-use crate::ir::Language;
 use crate::ir::verify::Verified;
+use crate::ir::{Hand, Language};
 use crate::preview::{Mesh, Model, Scene, Stitch, View, kind_color};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -78,7 +78,7 @@ fn extras(program: &Verified<'_>, scene: &Scene) -> Value {
     });
     let parts: Vec<Value> = parts.collect();
     let [width, height] = scene.gauge;
-    json!({
+    let mut extras = json!({
         "schema": "picot.model/1",
         "version": env!("CARGO_PKG_VERSION"),
         "name": program.name,
@@ -89,7 +89,11 @@ fn extras(program: &Verified<'_>, scene: &Scene) -> Value {
         "yarn": { "thickness": scene.yarn, "interpenetrating": true },
         "kinds": kinds(scene).into_keys().collect::<Vec<_>>(),
         "parts": parts,
-    })
+    });
+    if program.maker.hand == Hand::Left {
+        extras["hand"] = program.maker.hand.word().into();
+    }
+    extras
 }
 
 /// What stitches are, by name, with the number that stands for it.

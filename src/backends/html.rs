@@ -11,7 +11,7 @@ use super::svg::{self, Chart, ScSymbol, Svg};
 use super::{Backend, Error, Format};
 use crate::diag::Sink;
 use crate::ir::verify::Verified;
-use crate::ir::{GaugeOrigin, Terms};
+use crate::ir::{GaugeOrigin, Hand, Terms};
 use crate::preview::{Places, Refused, Scene};
 use serde::Deserialize;
 use std::fmt::Write as _;
@@ -240,9 +240,13 @@ fn about(program: &Verified<'_>, scene: &Result<Scene, Refused>, out: &mut Strin
                 .to_owned(),
         },
     };
+    let hand = match program.maker.hand {
+        Hand::Right => "",
+        Hand::Left => "<dt>Hand</dt><dd>for left-handed work; the view shows what comes out then</dd>",
+    };
     let _ = write!(
         out,
-        "<dl><dt>Pattern</dt><dd>verified by working every loop</dd>\
+        "<dl><dt>Pattern</dt><dd>verified by working every loop</dd>{hand}\
          <dt>Gauge</dt><dd>{gauge}</dd><dt>Places of the stitches</dt><dd>{}</dd>\
          <dt>Yarn length</dt><dd>an estimate from one measured yarn</dd>\
          <dt>Yarn in the view</dt><dd>drawn to the stitch size; strands may touch or pass through each other</dd></dl>\n\

@@ -53,6 +53,9 @@ fn document(program: &Verified<'_>, out: &mut impl Write) -> io::Result<()> {
             writeln!(out, "\"yarn\": {{\"length\": {yarn}, \"spare\": {SPARE}, \"estimated\": true}},")?;
         }
     }
+    if !program.maker.is_usual() {
+        writeln!(out, "\"maker\": {{\"hand\": \"{}\"}},", program.maker.hand.word())?;
+    }
     writeln!(out, "\"colors\": {},", List(program.colors.iter().map(|color| quoted(color))))?;
     writeln!(out, "\"stitches\": {},", program.facts().stitches(program))?;
     out.write_all(b"\"parts\": [")?;

@@ -17,7 +17,7 @@ use super::{Backend, Error, Format};
 use crate::diag::Sink;
 use crate::ir::machine::{Checked, Choice, Code};
 use crate::ir::verify::{PartFacts, Verified};
-use crate::ir::{Part, Start};
+use crate::ir::{Hand, Part, Start};
 use crate::lower;
 use pen::{Escaped, N};
 use serde::Deserialize;
@@ -166,6 +166,9 @@ impl Svg {
             };
             let mut sheet = Sheet::new(index, own_page, self.sc_symbol);
             if spiral {
+                if program.maker.hand == Hand::Left {
+                    sheet.mirror();
+                }
                 round::draw(part, &trace, &titles, &mut sheet);
             } else {
                 rows::draw(part, &trace, &titles, &mut sheet);
@@ -233,5 +236,9 @@ fn description(program: &Verified<'_>) -> String {
         let widest = facts.rows.iter().map(|row| row.produces).max().unwrap_or(0);
         format!("{}: {rounds} {kind}, {} stitches, at most {widest} in one", part.name, facts.stitches)
     });
-    format!("Crochet chart. {}.", parts.collect::<Vec<_>>().join(". "))
+    let hand = match program.maker.hand {
+        Hand::Right => "",
+        Hand::Left => ", for left-handed work",
+    };
+    format!("Crochet chart{hand}. {}.", parts.collect::<Vec<_>>().join(". "))
 }

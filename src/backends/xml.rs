@@ -9,7 +9,8 @@ use crate::diag::Sink;
 use crate::ir::exchange::{MAJOR, MINOR, NAMESPACE, Words};
 use crate::ir::verify::{PartFacts, Verified};
 use crate::ir::{
-    Block, Direction, Entry, Gauge, GaugeOrigin, Graph, Op, Part, PartId, Program, Segment, Start, Stitch,
+    Block, Direction, Entry, Gauge, GaugeOrigin, Graph, Hand, Op, Part, PartId, Program, Segment, Start,
+    Stitch,
 };
 use std::io;
 use tag::Tags;
@@ -107,7 +108,11 @@ impl<W: io::Write> Writer<'_, W> {
     fn program(mut self, graph: bool) -> io::Result<()> {
         let program = self.program;
         self.tags.tag("program").text("xmlns", NAMESPACE).text("version", &format!("{MAJOR}.{MINOR}"));
-        self.tags.text("name", &program.name).text("unit", "mm").open()?;
+        self.tags.text("name", &program.name).text("unit", "mm");
+        if program.maker.hand != Hand::Right {
+            self.tags.text("hand", program.maker.hand.word());
+        }
+        self.tags.open()?;
         if let Some(gauge) = &program.gauge {
             self.gauge(gauge)?;
         }

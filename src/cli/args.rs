@@ -96,6 +96,9 @@ pub(crate) struct Reading {
     /// Machine: a name of `picot list machines`, or a profile file; one of kind `hand` bounds the pattern itself
     #[arg(long, value_name = "NAME")]
     pub(crate) machine: Option<String>,
+    /// Make the pattern for a left-handed maker; the same as --set hand=left
+    #[arg(long)]
+    pub(crate) left_handed: bool,
     /// Set an option of the generator or of a target (`picot list targets` shows the keys)
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub(crate) set: Vec<(String, toml::Value)>,

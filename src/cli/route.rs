@@ -55,8 +55,10 @@ pub(crate) fn route(reading: &Reading, targets: &[&'static Target]) -> Result<Ro
     let mut general = toml::Table::new();
     let mut conventions = Conventions::default();
     let mut tables = vec![toml::Table::new(); targets.len()];
-    for (key, value) in &reading.set {
+    let left_handed = reading.left_handed.then(|| ("hand".to_owned(), toml::Value::from("left")));
+    for (key, value) in reading.set.iter().chain(&left_handed) {
         let mut known = false;
+        let mut printed = false;
         if generator.contains(&key.as_str()) {
             known = true;
             let alone = toml::Table::from_iter([(key.clone(), value.clone())]);
@@ -65,14 +67,15 @@ pub(crate) fn route(reading: &Reading, targets: &[&'static Target]) -> Result<Ro
         }
         for (target, table) in targets.iter().zip(&mut tables) {
             if target.keys().contains(&key.as_str()) {
-                known = true;
+                (known, printed) = (true, true);
                 let alone = toml::Table::from_iter([(key.clone(), value.clone())]);
                 target.configure(alone).map_err(|error| wrong_value(key, &error))?;
                 table.insert(key.clone(), value.clone());
             }
         }
         let convention = key == "lang" || Setting::ALL.iter().any(|setting| setting.name() == key);
-        if convention && !known {
+        // Terms of a target are those that it writes.
+        if convention && !printed {
             known = true;
             let value = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
             let declared = conventions.set(key, &value);

@@ -3,7 +3,7 @@
 use super::{Input, Reader, Unit};
 use crate::diag::{Code, Diagnostic, Sink, Source, Sources, Span};
 use crate::ir::Gauge;
-use crate::shape::{Ring, Shape, Stack, Tube};
+use crate::shape::{Ring, Shape, Stack, Tube, Wishes};
 use glam::DVec3;
 
 /// The reader.
@@ -214,7 +214,7 @@ impl File {
         stack.revolve(gauge.width);
         let ends = stack.ends();
         let tubes = vec![Tube::new("trunk", Box::new(stack), ends)];
-        Ok(Shape { name: self.name, gauge, tubes })
+        Ok(Shape { name: self.name, gauge, tubes, wishes: Wishes::default() })
     }
 
     /// Two loops that cross each other: the place of the second, and what to say.

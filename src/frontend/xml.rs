@@ -12,7 +12,9 @@ use super::{Input, Reader};
 use crate::diag::{Code, Sink, Source, Sources, Span, did_you_mean};
 use crate::ir::exchange::{MAJOR, MINOR, NAMESPACE, Words};
 use crate::ir::yarn::Hook;
-use crate::ir::{Block, Gauge, GaugeOrigin, Graph, Op, Part, PartId, Pattern, Program, Segment, Start};
+use crate::ir::{
+    Block, Gauge, GaugeOrigin, Graph, Hand, Maker, Op, Part, PartId, Pattern, Program, Segment, Start,
+};
 use cursor::{Cursor, Element, Next, Stop};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -77,9 +79,10 @@ impl<'t> Document<'t, '_, '_> {
     fn read(&mut self) -> Result<Program, Stop> {
         let Next::Open(root) = self.cursor.next()? else { return Err(Stop) };
         self.version(root)?;
-        self.cursor.only(root, &["version", "name", "unit"])?;
+        self.cursor.only(root, &["version", "name", "unit", "hand"])?;
         let name = self.cursor.text_of(root, "name")?.0.into_owned();
         self.cursor.word_of(root, "unit", &[("mm", ())])?;
+        let maker = Maker { hand: self.cursor.word("hand", Hand::WORDS)?.unwrap_or_default() };
         let (mut gauge, mut colors) = (None, Vec::new());
         let (mut parts, mut graphs) = (Vec::new(), Vec::new());
         let mut children = Children::of(root, &PROGRAM);
@@ -105,7 +108,7 @@ impl<'t> Document<'t, '_, '_> {
         while !matches!(self.cursor.next()?, Next::End) {}
         self.resolve(&mut parts)?;
         let graphs = self.all_or_none(graphs)?;
-        Ok(Program { name, gauge, colors, pattern: Pattern { parts }, graphs })
+        Ok(Program { name, gauge, maker, colors, pattern: Pattern { parts }, graphs })
     }
 
     /// Looks at the root element: is it ours, and of a version that we know?

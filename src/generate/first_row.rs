@@ -98,6 +98,22 @@ pub(super) fn picked_up(surface: &dyn ParametricSurface, points: &[DVec3]) -> (f
     (turn, feet)
 }
 
+/// The place halfway around the start of a surface from v = 0, along the line there, in turns.
+pub(super) fn opposite(surface: &dyn ParametricSurface) -> f64 {
+    const SAMPLES: u32 = 256;
+    let at = |k: u32| surface.point(0.0, f64::from(k) / f64::from(SAMPLES));
+    let total: f64 = (0..SAMPLES).map(|k| at(k).distance(at(k + 1))).sum();
+    let mut length = 0.0;
+    for k in 0..SAMPLES {
+        let step = at(k).distance(at(k + 1));
+        if length + step >= 0.5 * total {
+            return (f64::from(k) + (0.5 * total - length) / step.max(1e-300)) / f64::from(SAMPLES);
+        }
+        length += step;
+    }
+    0.5
+}
+
 /// The place of the surface next to a point beside its start, sought from a place on the line there.
 fn nearest(surface: &dyn ParametricSurface, point: DVec3, line: f64) -> (f64, f64) {
     const STEPS: u32 = 12;

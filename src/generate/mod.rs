@@ -23,13 +23,15 @@ mod weave;
 pub use options::{Options, Preset};
 
 use crate::diag::{Code, Diagnostic, Sink};
-use crate::ir::{Gauge, Graph, MAX_LOOPS};
-use crate::shape::{Attachment, End, Joint, ParametricSurface, Tube, area, is_revolution};
+use crate::ir::maker::mirrored;
+use crate::ir::{Gauge, Graph, Hand, MAX_LOOPS};
+use crate::shape::{Attachment, End, Joint, Mirrored, ParametricSurface, Tube, area, is_revolution};
 use glam::DVec3;
 use relax::{Effort, Ends, Mark, Relaxer};
 use rows::Rows;
 use seam::Turned;
 use sheet::{Foot, Sheet};
+use std::borrow::Cow;
 use weave::{Outcome, Weaver};
 
 /// Nodes may slide this far over an open end while they settle.
@@ -76,13 +78,22 @@ fn lay(
         return fail(sink, Code::OptionOutOfRange, message, &format!("give it a value {right}"));
     }
     let options = &options.resolved();
+    // What the left hand works comes out mirrored, so its pattern is made for the mirror image.
+    let hand = options.maker().hand;
+    let mirror = Mirrored(&*tube.surface);
+    let (target, loops): (&dyn ParametricSurface, _) = match hand {
+        Hand::Right => (&*tube.surface, loops.map(Cow::Borrowed)),
+        Hand::Left => (&mirror, loops.map(|loops| loops.iter().copied().map(mirrored).collect())),
+    };
     // A branch in a slit begins at an end of it, with as many loops below as above.
     let slit = matches!(tube.attachment, Some(Attachment { joint: Joint::Opening, .. }));
-    let picked_up = loops.map(|loops| first_row::picked_up(&*tube.surface, loops));
-    let turned = match &picked_up {
-        Some((by, _)) => Turned { surface: &*tube.surface, by: *by },
-        None if slit => Turned { surface: &*tube.surface, by: 0.0 },
-        None => Turned::to_slowest_side(&*tube.surface),
+    let picked_up = loops.map(|loops| first_row::picked_up(target, &loops));
+    let turned = match (&picked_up, hand) {
+        (Some((by, _)), _) => Turned { surface: target, by: *by },
+        (None, Hand::Right) if slit => Turned { surface: target, by: 0.0 },
+        // Rounds of the left hand come to the other end of the slit first.
+        (None, Hand::Left) if slit => Turned { surface: target, by: first_row::opposite(target) },
+        (None, _) => Turned::to_slowest_side(target),
     };
     let fixed = slit || picked_up.is_some();
     let first = picked_up.as_ref().map(|(_, feet)| feet.as_slice());
@@ -143,7 +154,11 @@ fn lay(
         return fail(sink, Code::SurfaceBroken, "stitches ran off this surface".into(), GENTLER);
     }
     let poles = Ground::new(surface, ends, &rows, gauge, options).poles;
-    Some(finish::graph(&sheet, lifted.as_ref().unwrap_or(&rows), start, poles, turn))
+    let graph = finish::graph(&sheet, lifted.as_ref().unwrap_or(&rows), start, poles, turn);
+    Some(match hand {
+        Hand::Right => graph,
+        Hand::Left => graph.mirrored(),
+    })
 }
 
 /// A finished sheet, the stitches of its first row, and where around the tube the helix began.

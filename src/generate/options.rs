@@ -1,5 +1,7 @@
 //! What the generator may be told; each option says what it changes and what it costs.
 
+use crate::ir::{Hand, Maker};
+use crate::shape::Wishes;
 use serde::Deserialize;
 
 /// A set of options under one name.
@@ -42,6 +44,9 @@ pub struct Options {
     pub tries: u32,
     /// Shaping of rotationally symmetric shapes as a designer writes it: even repeats, staggered from round to round.
     pub symmetric: bool,
+    /// The hand that holds the hook, `right` or `left`; where nothing is said, what the shape file says, and else the right
+    /// one. For the left hand the pattern is that of the mirror image, so that the object comes out as designed.
+    pub hand: Option<Hand>,
     /// The rules of the paper's own algorithm instead of ours; most other options then have no effect.
     #[serde(skip)]
     pub paper: bool,
@@ -65,6 +70,7 @@ impl Default for Options {
             squareness: 0.25,
             tries: 4,
             symmetric: true,
+            hand: None,
             paper: false,
             settle: false,
         }
@@ -72,6 +78,17 @@ impl Default for Options {
 }
 
 impl Options {
+    /// The options with what they leave open as a shape wishes it.
+    #[must_use]
+    pub fn granting(&self, wishes: &Wishes) -> Self {
+        Self { hand: self.hand.or(wishes.hand), ..self.clone() }
+    }
+
+    /// Whom the pattern is for.
+    pub fn maker(&self) -> Maker {
+        Maker { hand: self.hand.unwrap_or_default() }
+    }
+
     /// The options with those of the preset taken in.
     pub(super) fn resolved(&self) -> Self {
         if self.paper {

@@ -40,6 +40,7 @@ pub(super) fn options(base: &Options) -> Options {
         tries: 1,
         symmetric: false,
         short_rows: base.short_rows,
+        hand: base.hand,
         ..Options::default()
     }
 }

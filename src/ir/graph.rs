@@ -87,6 +87,19 @@ impl std::fmt::Debug for Corners {
 }
 
 impl Graph {
+    /// The graph seen in a mirror ([`maker::mirrored`](super::maker::mirrored)): v runs the other way around.
+    #[must_use]
+    pub fn mirrored(mut self) -> Self {
+        use super::maker::mirrored;
+        for node in &mut self.nodes {
+            node.position = mirrored(node.position);
+            // A hair above zero rounds up to a whole turn.
+            node.v = Some(1.0 - node.v).filter(|v| *v < 1.0).unwrap_or(0.0);
+        }
+        self.pole = self.pole.map(mirrored);
+        self.end_pole = self.end_pole.map(mirrored);
+        self
+    }
     /// Edges along the yarn: successive nodes that are not joined by a turn.
     pub fn courses(&self) -> impl Iterator<Item = (NodeId, NodeId)> + '_ {
         let mut turns =

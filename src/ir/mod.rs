@@ -19,6 +19,7 @@ pub mod exchange;
 pub mod graph;
 pub mod joins;
 pub mod machine;
+pub mod maker;
 pub mod pattern;
 pub mod stitch;
 pub mod verify;
@@ -26,6 +27,7 @@ pub mod yarn;
 
 pub use dialect::{Language, Terms};
 pub use graph::{Graph, Node, NodeId, Tile};
+pub use maker::{Hand, Maker};
 pub use pattern::{Block, Direction, Finish, Op, Part, PartId, Pattern, Row, Segment, Start, Step};
 pub use stitch::{Entry, Kind, Stitch};
 
@@ -83,6 +85,8 @@ pub struct Program {
     pub name: String,
     /// Stitch size; `None` for a written pattern that does not tell it.
     pub gauge: Option<Gauge>,
+    /// Whom the pattern is for.
+    pub maker: Maker,
     /// Names of the yarn colors that steps refer to; empty when there is one unnamed color.
     pub colors: Vec<String>,
     /// What the hook does.

@@ -81,14 +81,18 @@ impl Sampler {
 
     /// Samples the mesh of one tube.
     pub fn add(&mut self, tube: &Tube, mesh: &Mesh<'_>) {
-        let surface = &*tube.surface;
-        let chain = if tube.start == End::Open { mesh.start } else { 0 };
+        self.add_on(&*tube.surface, [tube.start, tube.end], mesh);
+    }
+
+    /// Samples a mesh on a surface with these ends.
+    pub fn add_on(&mut self, surface: &dyn ParametricSurface, ends: [End; 2], mesh: &Mesh<'_>) {
+        let chain = if ends[0] == End::Open { mesh.start } else { 0 };
         self.measure.nodes += mesh.nodes.len();
         self.measure.stitches += mesh.nodes.len() - chain;
         self.measure.short_rows += mesh.short_rows;
         self.lengths(surface, mesh);
         self.skew(mesh);
-        self.cover(tube, mesh);
+        self.cover(surface, ends, mesh);
         self.level(mesh);
     }
 
@@ -122,8 +126,7 @@ impl Sampler {
         }
     }
 
-    fn cover(&mut self, tube: &Tube, mesh: &Mesh<'_>) {
-        let surface = &*tube.surface;
+    fn cover(&mut self, surface: &dyn ParametricSurface, ends: [End; 2], mesh: &Mesh<'_>) {
         for tile in &mesh.tiles {
             let Some([a, b, c, d]) = mesh.corners(tile) else { continue };
             match tile.class {
@@ -157,14 +160,14 @@ impl Sampler {
         let mut open = 0.0;
         let first_row: Vec<NodeId> = (0..first as NodeId).collect();
         // Between an open edge and the helix lies half a row that no stitch covers; a pole is covered to its center.
-        match tube.start {
+        match ends[0] {
             End::Open if mesh.ragged[0] => open += beyond(surface, mesh, &first_row, 0.0),
             End::Open => open += wedge * first as f64,
             End::Closed => {
                 self.tiles += disc(mesh, &first_row, surface.point(0.0, 0.0), mesh.nodes.get(first));
             }
         }
-        match tube.end {
+        match ends[1] {
             End::Open if mesh.ragged[1] => open -= beyond(surface, mesh, &mesh.open, 1.0),
             End::Open => open += wedge * last as f64,
             End::Closed => {

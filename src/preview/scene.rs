@@ -6,11 +6,13 @@ use super::predict::{self, Rest};
 use super::stitch as keys;
 use super::yarn::Yarn;
 use crate::diag::Sink;
+use crate::ir::maker::mirrored;
 use crate::ir::verify::Verified;
 use crate::ir::yarn::Yarn as Weight;
-use crate::ir::{Direction, Gauge, GaugeOrigin, Graph, Kind, PartId, Program};
+use crate::ir::{Direction, Gauge, GaugeOrigin, Graph, Hand, Kind, PartId, Program};
 use glam::DVec3;
 use serde::Deserialize;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Most stitches that a scene holds.
@@ -35,7 +37,7 @@ pub struct Stitch {
     pub row: Option<u32>,
     /// Index in [`Scene::colors`].
     pub color: u16,
-    /// Corners of its tile in mm. Number x + 2 y + 4 z: x in course direction, y from the loops worked into to those
+    /// Corners of its tile in mm. Number x + 2 y + 4 z: x in the course direction of a row from the right side, y from the loops worked into to those
     /// made, z from the inside to the outside.
     pub corners: [DVec3; 8],
     /// (L - l) / l of its top edge against the stitch width, as a fraction.
@@ -201,11 +203,25 @@ impl Scene {
             }
         } else {
             for (net, graph) in nets.iter().zip(&program.graphs) {
+                let graph = as_right_handed(graph, program.maker.hand);
                 let places: Vec<DVec3> = graph.nodes.iter().map(|node| node.position).collect();
-                scene.add(program, net, &places, Some(graph))?;
+                scene.add(program, net, &places, Some(&graph))?;
             }
         }
+        if program.maker.hand == Hand::Left {
+            scene.mirror();
+        }
         if scene.stitches.is_empty() { Err(Refused::Empty) } else { Ok(scene) }
+    }
+
+    /// Stitches are built as a right hand makes them; the left one makes their mirror image.
+    fn mirror(&mut self) {
+        for corner in self.stitches.iter_mut().flat_map(|stitch| &mut stitch.corners) {
+            *corner = mirrored(*corner);
+        }
+        for piece in &mut self.pieces {
+            piece.yarn.mirror();
+        }
     }
 
     fn add(
@@ -248,6 +264,14 @@ impl Scene {
         let stitches = from..self.stitches.len();
         self.pieces.push(Piece { name: name.to_owned(), part: net.part, copy: net.copy, stitches, yarn });
         Ok(())
+    }
+}
+
+/// A graph as it would be if the same words were worked with the right hand.
+pub(super) fn as_right_handed(graph: &Graph, hand: Hand) -> Cow<'_, Graph> {
+    match hand {
+        Hand::Right => Cow::Borrowed(graph),
+        Hand::Left => Cow::Owned(graph.clone().mirrored()),
     }
 }
 

@@ -58,6 +58,14 @@ impl Yarn {
         }
     }
 
+    /// Takes all points to their mirror image.
+    pub(super) fn mirror(&mut self) {
+        let corners = self.strands.iter_mut().flat_map(|strand| &mut strand.corners);
+        for point in self.points.iter_mut().chain(corners) {
+            *point = crate::ir::maker::mirrored(*point);
+        }
+    }
+
     /// Notes the tile that the points to come are mapped into, and their way through the unit cube.
     pub(super) fn strand(&mut self, stitch: u32, corners: [DVec3; 8], way: &[[f64; 3]]) {
         let way = self.ways.iter().position(|known| known == way).unwrap_or_else(|| {

@@ -10,6 +10,7 @@ pub mod loops;
 pub mod measure;
 mod meridian;
 pub mod mesh;
+mod mirror;
 mod profile;
 mod revolve;
 pub(crate) mod ring;
@@ -22,12 +23,13 @@ pub mod sweep;
 
 pub use bezier::Bezier;
 pub use measure::{area, girth, is_revolution, length_along};
+pub use mirror::Mirrored;
 pub use ring::Ring;
 pub use spec::{Fault, Interpolation, Profile, Section, TubeSpec};
 pub use stack::Stack;
 pub use sweep::Sweep;
 
-use crate::ir::Gauge;
+use crate::ir::{Gauge, Hand};
 use glam::DVec3;
 use std::fmt;
 
@@ -140,4 +142,13 @@ pub struct Shape {
     pub gauge: Gauge,
     /// The tubes in working order: the trunk first, each behind the one that it grows from.
     pub tubes: Vec<Tube>,
+    /// How it shall be made.
+    pub wishes: Wishes,
+}
+
+/// What a file says about the making; the options of a run come first.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wishes {
+    /// The hand that holds the hook.
+    pub hand: Option<Hand>,
 }

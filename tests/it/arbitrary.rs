@@ -4,7 +4,7 @@
 use glam::DVec3;
 use picot::ir::graph::Corners;
 use picot::ir::{
-    Block, Direction, Finish, Graph, Node, Op, Part, Pattern, Program, Row, Start, Step, Stitch, Tile,
+    Block, Direction, Finish, Graph, Maker, Node, Op, Part, Pattern, Program, Row, Start, Step, Stitch, Tile,
 };
 use std::collections::VecDeque;
 
@@ -154,6 +154,7 @@ pub(crate) fn program(start: Start, rows: impl IntoIterator<Item = Row>) -> Prog
     Program {
         name: "thing".into(),
         gauge: None,
+        maker: Maker::default(),
         colors: Vec::new(),
         pattern: Pattern { parts: vec![part] },
         graphs: Vec::new(),

@@ -46,7 +46,7 @@ fn branched() -> Vec<(String, Shape, Program)> {
     made.collect()
 }
 
-fn written(program: &Program) -> String {
+pub(crate) fn written(program: &Program) -> String {
     let mut sink = Sink::new();
     let verified = verify(program, &mut sink).expect("sound");
     let target =
@@ -56,7 +56,7 @@ fn written(program: &Program) -> String {
     String::from_utf8(bytes).expect("text")
 }
 
-fn read_back(pattern: &str) -> Program {
+pub(crate) fn read_back(pattern: &str) -> Program {
     let mut sources = Sources::new(&nothing);
     let source = sources.add("pattern.txt", pattern.as_bytes().to_vec()).expect("small");
     let mut sink = Sink::new();

@@ -5,7 +5,9 @@ use picot::backends::{kcode, knitout};
 use picot::diag::{Sink, Sources};
 use picot::frontend;
 use picot::ir::machine::{Code, Instruction, Machine, execute};
-use picot::ir::{Block, Direction, Finish, Kind, Op, Part, Pattern, Program, Row, Start, Step, Stitch};
+use picot::ir::{
+    Block, Direction, Finish, Kind, Maker, Op, Part, Pattern, Program, Row, Start, Step, Stitch,
+};
 use picot::lower::machine::{Lowered, Options, lower, validate::validate};
 use proptest::prelude::*;
 use std::io;
@@ -16,6 +18,7 @@ pub(super) fn program(start: Start, rows: Vec<Vec<Op>>, finish: Finish) -> Progr
     Program {
         name: "test".to_owned(),
         gauge: None,
+        maker: Maker::default(),
         colors: Vec::new(),
         pattern: Pattern { parts: vec![part] },
         graphs: Vec::new(),

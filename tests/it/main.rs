@@ -16,6 +16,7 @@ mod knitout;
 mod limbs;
 mod loops;
 mod machine;
+mod maker;
 mod meshes;
 mod metrics;
 mod mutation;

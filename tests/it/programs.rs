@@ -8,8 +8,8 @@ use picot::diag::Span;
 use picot::ir::graph::Corners;
 use picot::ir::yarn::Hook;
 use picot::ir::{
-    Block, Direction, Entry, Finish, Gauge, GaugeOrigin, Graph, Kind, Node, Op, Part, PartId, Pattern,
-    Program, Row, Segment, Start, Step, Stitch, Tile,
+    Block, Direction, Entry, Finish, Gauge, GaugeOrigin, Graph, Hand, Kind, Maker, Node, Op, Part, PartId,
+    Pattern, Program, Row, Segment, Start, Step, Stitch, Tile,
 };
 use proptest::prelude::*;
 use std::collections::VecDeque;
@@ -113,7 +113,8 @@ impl Grower {
         }
         let graphs =
             if self.with_graph { parts.iter().map(|part| self.graph(part)).collect() } else { Vec::new() };
-        Program { name, gauge, colors, pattern: Pattern { parts }, graphs }
+        let hand = if self.one_in(3) { Hand::Left } else { Hand::Right };
+        Program { name, gauge, maker: Maker { hand }, colors, pattern: Pattern { parts }, graphs }
     }
 
     fn begin(

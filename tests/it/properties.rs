@@ -4,7 +4,7 @@ use glam::{DQuat, DVec2, DVec3};
 use picot::diag::{Severity, Sink};
 use picot::generate::{Options, generate};
 use picot::ir::verify::verify;
-use picot::ir::{Finish, Gauge, Pattern, Program};
+use picot::ir::{Finish, Gauge, Maker, Pattern, Program};
 use picot::lower::trace;
 use picot::shape::{Bezier, End, Interpolation, Profile, Section, Sweep, Tube, TubeSpec};
 use std::collections::BTreeMap;
@@ -146,6 +146,7 @@ fn compile(spec: &TubeSpec, gauge: Gauge, options: &Options) -> Outcome {
     let mut program = Program {
         name: "found".into(),
         gauge: Some(gauge),
+        maker: Maker::default(),
         colors: Vec::new(),
         pattern,
         graphs: vec![graph],

@@ -9,8 +9,8 @@ use picot::frontend::crochet::{Conventions, Document};
 use picot::frontend::reader;
 use picot::ir::verify::verify;
 use picot::ir::{
-    Block, Direction, Entry, Finish, Kind, Op, Part, PartId, Pattern, Program, Row, Segment, Start, Step,
-    Stitch,
+    Block, Direction, Entry, Finish, Hand, Kind, Op, Part, PartId, Pattern, Program, Row, Segment, Start,
+    Step, Stitch,
 };
 use proptest::prelude::*;
 
@@ -104,7 +104,7 @@ fn round_trip(program: &Program) -> Result<(), String> {
         }
         let read = read.ok_or_else(|| format!("nothing was read from\n{text}"))?;
         let told = plain(&read);
-        if told != expected || read.name != program.name {
+        if told != expected || read.name != program.name || read.maker != program.maker {
             let parts = told.iter().zip(&expected).find(|(told, expected)| told != expected);
             return Err(format!("differs: {parts:?} in\n{text}"));
         }
@@ -492,7 +492,15 @@ fn program(tape: &mut Tape<'_>) -> Program {
         }
     }
     let colors = palette.iter().take(usize::from(colors)).map(|color| (*color).to_owned()).collect();
-    Program { name: "thing".into(), gauge: None, colors, pattern: Pattern { parts }, graphs: Vec::new() }
+    let maker = picot::ir::Maker { hand: if tape.below(3) == 2 { Hand::Left } else { Hand::Right } };
+    Program {
+        name: "thing".into(),
+        gauge: None,
+        maker,
+        colors,
+        pattern: Pattern { parts },
+        graphs: Vec::new(),
+    }
 }
 
 proptest! {

@@ -26,7 +26,7 @@ pub(crate) fn shapes() -> Vec<(String, PathBuf)> {
 }
 
 #[expect(clippy::disallowed_methods, reason = "tests read their cases from the disk")]
-fn load(name: &str) -> std::io::Result<Vec<u8>> {
+pub(crate) fn load(name: &str) -> std::io::Result<Vec<u8>> {
     std::fs::read(name)
 }
 

@@ -9,8 +9,8 @@ use picot::diag::Sink;
 use picot::generate::{Options, generate};
 use picot::ir::verify::verify;
 use picot::ir::{
-    Direction, Entry, Finish, Gauge, GaugeOrigin, Kind, Op, Part, PartId, Pattern, Program, Row, Segment,
-    Start, Step, Stitch,
+    Direction, Entry, Finish, Gauge, GaugeOrigin, Kind, Maker, Op, Part, PartId, Pattern, Program, Row,
+    Segment, Start, Step, Stitch,
 };
 use picot::lower::trace;
 use picot::shape::analytic::{Sphere, TorusArc};
@@ -47,8 +47,14 @@ pub(crate) fn compiled(name: &str, tube: &Tube, gauge: Gauge) -> Program {
     let finish = if tube.end == End::Closed { Finish::DrawnShut } else { Finish::Open };
     let part = trace(&tube.name, &graph, finish);
     let pattern = Pattern { parts: vec![part] };
-    let mut program =
-        Program { name: name.into(), gauge: Some(gauge), colors: Vec::new(), pattern, graphs: vec![graph] };
+    let mut program = Program {
+        name: name.into(),
+        gauge: Some(gauge),
+        maker: Maker::default(),
+        colors: Vec::new(),
+        pattern,
+        graphs: vec![graph],
+    };
     picot::passes::run(&mut program, &mut sink);
     program
 }

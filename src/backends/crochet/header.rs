@@ -5,7 +5,7 @@ use super::{Crochet, Language, Style};
 use crate::ir::dialect::{Prose, fill};
 use crate::ir::verify::Verified;
 use crate::ir::yarn::{SPARE, Yarn};
-use crate::ir::{Finish, Gauge, GaugeOrigin, Kind, Start, Stitch};
+use crate::ir::{Finish, Gauge, GaugeOrigin, Hand, Kind, Start, Stitch};
 use glam::DVec3;
 use std::io;
 
@@ -22,9 +22,12 @@ pub(super) fn write(options: &Crochet, program: &Verified<'_>, text: &mut Text<'
     if let Some(gauge) = &program.gauge {
         text.line(&format!("gauge: {}", gauge_line(gauge, prose)))?;
     }
-    if uses.short_rows {
-        // A turn of ours neither works nor skips a loop; the other habit is to bridge one.
-        text.line("convention: turn-mark=bare")?;
+    // A turn of ours neither works nor skips a loop; the other habit is to bridge one.
+    let bare = uses.short_rows.then_some("turn-mark=bare");
+    let left = (program.maker.hand == Hand::Left).then_some("hand=left");
+    let conventions: Vec<&str> = bare.into_iter().chain(left).collect();
+    if !conventions.is_empty() {
+        text.line(&format!("convention: {}", conventions.join(", ")))?;
     }
     for (kind, works, makes) in &uses.special {
         text.line(&format!("def {} = {works} -> {makes}", special(*kind, *works, *makes, options.terms)))?;
@@ -41,6 +44,9 @@ pub(super) fn write(options: &Crochet, program: &Verified<'_>, text: &mut Text<'
             text.prose(prose.swatch)?;
         }
         text.prose(&fill(prose.materials, &[("list", &materials(program, gauge, prose))]))?;
+    }
+    if program.maker.hand == Hand::Left {
+        text.prose(prose.left_handed)?;
     }
     let terms = options.terms.name().to_uppercase();
     let list = abbreviations(options, &uses, program);

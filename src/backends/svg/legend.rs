@@ -5,7 +5,7 @@ use super::pen::{Escaped, N, P, Path};
 use super::sheet::{ACCENT, UNIT};
 use super::{Svg, symbols};
 use crate::ir::verify::Verified;
-use crate::ir::{Block, Entry, Kind, Op, Start, Stitch};
+use crate::ir::{Block, Entry, Hand, Kind, Op, Start, Stitch};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
@@ -88,12 +88,17 @@ pub(super) fn draw(options: &Svg, program: &Verified<'_>, reading: Reading, widt
             below += 15.0;
         }
     };
+    let left = program.maker.hand == Hand::Left;
     if reading.spirals {
-        say(
-            "Read the spiral from the middle outward and counterclockwise, as right-handed crochet grows. A round begins at its \
-             number; its stitch count is in parentheses.",
-            false,
+        let way = if left { "clockwise, as left-handed" } else { "counterclockwise, as right-handed" };
+        let text = format!(
+            "Read the spiral from the middle outward and {way} crochet grows. A round begins at its number; its stitch count is \
+             in parentheses."
         );
+        say(&text, false);
+    }
+    if reading.unrolled && left {
+        say("For left-handed work: rounds are drawn from left to right, as the left hand works them.", false);
     }
     if reading.unrolled {
         say(

@@ -1,4 +1,5 @@
-//! The round chart: one spiral outward from the start, counterclockwise from the top, counts at the marker.
+//! The round chart: one spiral outward from the start, counterclockwise from the top (clockwise on a mirrored sheet), counts
+//! at the marker.
 
 use super::pen::P;
 use super::rows::label;
@@ -247,8 +248,10 @@ impl Sheet {
         use super::pen::N;
         use std::fmt::Write as _;
         let [first, rest @ ..] = points else { return };
+        let first = self.seen(*first);
         let _ = write!(self.under, "<path {look} d=\"M{} {}", N(first.0), N(first.1));
         for point in rest {
+            let point = self.seen(*point);
             let _ = write!(self.under, "L{} {}", N(point.0), N(point.1));
         }
         self.under.push_str("\"/>\n");

@@ -4,6 +4,7 @@ use super::ScSymbol;
 use super::pen::{Escaped, N, P, Path};
 use super::symbols;
 use super::trace::Worked;
+use std::borrow::Cow;
 use std::fmt::Write as _;
 
 /// Width of a cell, in user units (pixels at 100 %).
@@ -28,6 +29,8 @@ pub(super) struct Sheet {
     last: Option<u32>,
     sc: ScSymbol,
     open: Option<bool>,
+    /// Left and right change places.
+    mirror: bool,
 }
 
 /// Where a text stands to its point.
@@ -52,11 +55,30 @@ impl Sheet {
             last: None,
             sc,
             open: None,
+            mirror: false,
         }
+    }
+
+    /// From here on draws the mirror image, with words that can be read.
+    pub(super) fn mirror(&mut self) {
+        self.mirror = true;
+    }
+
+    /// A point or a direction as it is drawn.
+    pub(super) fn seen(&self, at: P) -> P {
+        if self.mirror { P(-at.0, at.1) } else { at }
+    }
+
+    fn all_seen<'p>(&self, points: &'p [P]) -> Cow<'p, [P]> {
+        if self.mirror {
+            return points.iter().map(|at| self.seen(*at)).collect();
+        }
+        Cow::Borrowed(points)
     }
 
     /// Makes room for a point.
     pub(super) fn hold(&mut self, at: P, around: f64) {
+        let at = self.seen(at);
         self.low = P(self.low.0.min(at.0 - around), self.low.1.min(at.1 - around));
         self.high = P(self.high.0.max(at.0 + around), self.high.1.max(at.1 + around));
     }
@@ -79,7 +101,8 @@ impl Sheet {
     /// Draws a stitch; those of a back pass are colored.
     pub(super) fn stitch(&mut self, worked: &Worked, base: &[P], tops: &[P], up: P) {
         let mut path = Path::default();
-        let filled = symbols::draw(worked.stitch, self.sc, base, tops, up, UNIT, &mut path);
+        let [drawn, ends] = [self.all_seen(base), self.all_seen(tops)];
+        let filled = symbols::draw(worked.stitch, self.sc, &drawn, &ends, self.seen(up), UNIT, &mut path);
         if path.is_empty() {
             return;
         }
@@ -100,7 +123,8 @@ impl Sheet {
     /// A sign of the start, which has no tile.
     pub(super) fn sign(&mut self, stitch: crate::ir::Stitch, base: &[P], top: P, up: P) {
         let mut path = Path::default();
-        let filled = symbols::draw(stitch, self.sc, base, &[top], up, UNIT, &mut path);
+        let (base, up) = (self.all_seen(base), self.seen(up));
+        let filled = symbols::draw(stitch, self.sc, &base, &[self.seen(top)], up, UNIT, &mut path);
         self.path(None, &path, filled);
         self.hold(top, UNIT);
     }
@@ -121,12 +145,18 @@ impl Sheet {
     /// Writes a text of `size` with halo, so that it can be read over lines.
     pub(super) fn text(&mut self, at: P, size: f64, anchor: Anchor, accent: bool, text: &str) {
         let wide = text.chars().count() as f64 * size * 0.6;
-        let (x, anchor) = match anchor {
-            Anchor::Start => (at.0 + wide, ""),
-            Anchor::Middle => (at.0 + wide / 2.0, " text-anchor=\"middle\""),
-            Anchor::End => (at.0 - wide, " text-anchor=\"end\""),
+        let x = match anchor {
+            Anchor::Start => at.0 + wide,
+            Anchor::Middle => at.0 + wide / 2.0,
+            Anchor::End => at.0 - wide,
         };
         self.hold(P(x, at.1), size);
+        let at = self.seen(at);
+        let anchor = match (anchor, self.mirror) {
+            (Anchor::Start, false) | (Anchor::End, true) => "",
+            (Anchor::Middle, _) => " text-anchor=\"middle\"",
+            (Anchor::End, false) | (Anchor::Start, true) => " text-anchor=\"end\"",
+        };
         let color = if accent { format!(" fill=\"{ACCENT}\"") } else { String::new() };
         let _ = writeln!(
             self.words,
@@ -141,12 +171,14 @@ impl Sheet {
     /// A line behind the signs.
     pub(super) fn line(&mut self, from: P, to: P, look: &str) {
         let mut path = Path::default();
-        path.line(from, to);
+        path.line(self.seen(from), self.seen(to));
         let _ = writeln!(self.under, "<path {look} d=\"{}\"/>", path.data());
     }
 
     /// A box behind the signs.
     pub(super) fn area(&mut self, low: P, high: P, look: &str) {
+        let (a, b) = (self.seen(low), self.seen(high));
+        let (low, high) = (P(a.0.min(b.0), a.1), P(a.0.max(b.0), b.1));
         let _ = writeln!(
             self.under,
             "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"3\" {look}/>",
@@ -159,6 +191,8 @@ impl Sheet {
 
     /// An arrow of the length of half a cell around a point.
     pub(super) fn arrow(&mut self, at: P, along: P) {
+        self.hold(at, UNIT);
+        let (at, along) = (self.seen(at), self.seen(along));
         let up = P(along.1, -along.0);
         let (tail, tip) = (at.plus(along, -0.42 * UNIT), at.plus(along, 0.42 * UNIT));
         let mut path = Path::default();
@@ -171,6 +205,5 @@ impl Sheet {
             "<path fill=\"none\" stroke=\"{ACCENT}\" stroke-width=\"1.4\" stroke-linecap=\"round\" d=\"{}\"/>",
             path.data()
         );
-        self.hold(at, UNIT);
     }
 }

@@ -180,6 +180,7 @@ pub(super) fn check(document: &Document<'_>, options: &Conventions, sink: &mut S
     let program = (!failed).then(|| Program {
         name: heading.title,
         gauge: heading.gauge,
+        maker: heading.maker,
         colors: heading.colors,
         pattern: ir::Pattern { parts },
         graphs: Vec::new(),

@@ -61,6 +61,8 @@ settings! {
     TailCount = "tail-count" ["count" "stitches"];
     /// Short rows: each turn takes a loop for itself, as the tiles of the paper do, or none.
     TurnMark = "turn-mark" ["bridge" "bare"];
+    /// The hand that holds the hook: the same words give the mirror image in the other one.
+    Hand = "hand" ["right" "left"];
     /// What the row after a faulty row starts from: what fits best, the stated count, or the count made.
     AfterFault = "after-fault" ["best" "stated" "made"];
 }

@@ -5,12 +5,13 @@ use super::conventions::{Conventions, Setting};
 use super::lex::At;
 use super::syntax::{Content, Header, Pair};
 use crate::diag::{Code, Diagnostic};
-use crate::ir::{Gauge, Language, Terms};
+use crate::ir::{Gauge, Hand, Language, Maker, Terms};
 
 /// Declarations that become part of the program.
 pub(super) struct Heading {
     pub title: String,
     pub gauge: Option<Gauge>,
+    pub maker: Maker,
     pub colors: Vec<String>,
 }
 
@@ -22,7 +23,8 @@ pub(super) fn read(
 ) -> Heading {
     let stem = document.source.name().rsplit(['/', '\\']).next().unwrap_or_default();
     let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
-    let mut heading = Heading { title: stem.to_owned(), gauge: None, colors: Vec::new() };
+    let mut heading =
+        Heading { title: stem.to_owned(), gauge: None, maker: Maker::default(), colors: Vec::new() };
     let text = |at: At| document.text.get(at.range()).unwrap_or_default().trim();
     let mut wrong = |at: At, what: String| {
         let span = document.source.span(at.range());
@@ -48,6 +50,7 @@ pub(super) fn read(
             Header::Pair { .. } | Header::Color { .. } | Header::Def { .. } => {}
         }
     }
+    heading.maker.hand = if conventions.is(Setting::Hand, "left") { Hand::Left } else { Hand::Right };
     heading
 }
 

@@ -15,7 +15,7 @@ use super::{Input, Reader};
 use crate::diag::{Code, Diagnostic, Sink, Source, Sources, Span};
 use crate::ir::Gauge;
 use crate::shape::mesh::{Cut, Field, Mesh, Piece, Plan, Soup};
-use crate::shape::{Attachment, Bezier, Shape, Tube};
+use crate::shape::{Attachment, Bezier, Shape, Tube, Wishes};
 use glam::DVec3;
 
 /// The reader of Wavefront OBJ.
@@ -228,7 +228,7 @@ pub(super) fn shape(
     sink: &mut Sink<'_>,
 ) -> Option<Shape> {
     let cut = cut(soup, gauge, axes, wish, home, sink)?;
-    Some(Shape { name, gauge, tubes: tubes(cut) })
+    Some(Shape { name, gauge, tubes: tubes(cut), wishes: Wishes::default() })
 }
 
 /// The mesh in tubes, with notes of what was chosen.

@@ -7,6 +7,7 @@ mod branch;
 mod curve;
 mod fit;
 mod gauge;
+mod maker;
 mod mesh;
 mod pair;
 mod section;
@@ -17,7 +18,7 @@ use super::unit::Unit;
 use super::{Input, Reader};
 use crate::diag::{Code, Diagnostic, Sink, Source, Sources};
 use crate::ir::Gauge;
-use crate::shape::Shape;
+use crate::shape::{Shape, Wishes};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeTable;
@@ -39,7 +40,7 @@ const LONGEST_NAME: usize = 200;
 /// What a shape file describes.
 enum Document {
     Shape(Shape),
-    Mesh(mesh::Request),
+    Mesh(mesh::Request, Wishes),
 }
 
 fn read(source: &Source, sources: &mut Sources<'_>, sink: &mut Sink<'_>) -> Option<Input> {
@@ -59,7 +60,7 @@ pub(crate) fn read_at(
     walk.finish().into_iter().for_each(|diagnostic| sink.push(diagnostic));
     let shape = match document.filter(|_| sink.errors() == errors)? {
         Document::Shape(shape) => shape,
-        Document::Mesh(request) => request.fulfill(source, gauge, sources, sink)?,
+        Document::Mesh(request, wishes) => Shape { wishes, ..request.fulfill(source, gauge, sources, sink)? },
     };
     Some(Input::Shape(Box::new(shape)))
 }
@@ -139,7 +140,7 @@ fn first_of(text: &str, key: &str, again: usize) -> Option<Range<usize>> {
 fn document_of(walk: &mut Walk<'_>, document: &Spanned<DeTable<'_>>, file: &str) -> Option<Document> {
     let top = document.get_ref();
     let home = walk.span(0..0);
-    walk.known(top, "a shape file", &["name", "unit", "gauge", "trunk", "branch", "mesh"]);
+    walk.known(top, "a shape file", &["name", "unit", "gauge", "maker", "trunk", "branch", "mesh"]);
     if let Some((_, value)) = walk.get(top, "unit") {
         walk.unit = walk.word(value, "unit", Unit::WORDS)?;
     } else {
@@ -148,10 +149,11 @@ fn document_of(walk: &mut Walk<'_>, document: &Spanned<DeTable<'_>>, file: &str)
     }
     let name = name(walk, top, file);
     let gauge = gauge::read(walk, top, home);
+    let wishes = maker::read(walk, top);
     if let Some((place, value)) = walk.get(top, "mesh") {
         let request = mesh::read(walk, top, value, place);
-        let (request, name, (gauge, _)) = (request?, name?, gauge?);
-        return Some(Document::Mesh(request.of(name, gauge)));
+        let (request, name, (gauge, _), wishes) = (request?, name?, gauge?, wishes?);
+        return Some(Document::Mesh(request.of(name, gauge), wishes));
     }
     let trunk = if let Some((place, value)) = walk.get(top, "trunk") {
         tube::read(walk, value, place, "trunk")
@@ -164,9 +166,9 @@ fn document_of(walk: &mut Walk<'_>, document: &Spanned<DeTable<'_>>, file: &str)
         None
     };
     let limbs = branch::read(walk, top);
-    let (trunk, name, gauge) = (trunk?, name?, gauge?);
+    let (trunk, name, gauge, wishes) = (trunk?, name?, gauge?, wishes?);
     let tubes = branch::grow(walk, trunk, limbs?, (&gauge.0, gauge.1))?;
-    Some(Document::Shape(Shape { name, gauge: gauge.0, tubes }))
+    Some(Document::Shape(Shape { name, gauge: gauge.0, tubes, wishes }))
 }
 
 /// The name of the object: the file's own name where none is given.

@@ -37,6 +37,8 @@ pub struct Prose {
     pub needle: &'static str,
     /// Stuffing.
     pub stuffing: &'static str,
+    /// For whom a left-handed pattern is.
+    pub left_handed: &'static str,
     /// The list of abbreviations.
     pub abbreviations: &'static str,
     /// What an increase is.
@@ -97,6 +99,7 @@ pub(super) static ENGLISH: Prose = Prose {
     marker: "a stitch marker",
     needle: "a yarn needle",
     stuffing: "stuffing",
+    left_handed: "For left-handed work: hold the hook in your left hand and work each round from left to right. Worked right-handed, the same words give the mirror image.",
     abbreviations: "Abbreviations ({terms} terms): {list}.",
     inc: "increase: 2 {sc} in one stitch",
     dec: "decrease: 2 stitches worked together as one {sc}",
@@ -137,6 +140,7 @@ pub(super) static SPANISH: Prose = Prose {
     marker: "un marcador de puntos",
     needle: "una aguja lanera",
     stuffing: "relleno",
+    left_handed: "Para zurdos: sujeta la aguja con la mano izquierda y teje cada vuelta de izquierda a derecha. Tejido con la derecha, el mismo texto da la imagen reflejada.",
     abbreviations: "Abreviaturas: {list}.",
     inc: "aumento: 2 {sc} en el mismo punto",
     dec: "disminución: 2 puntos tejidos juntos como un {sc}",
@@ -177,6 +181,7 @@ pub(super) static PORTUGUESE: Prose = Prose {
     marker: "um marcador de pontos",
     needle: "uma agulha de tapeçaria",
     stuffing: "enchimento",
+    left_handed: "Para canhotos: segure a agulha com a mão esquerda e trabalhe cada carreira da esquerda para a direita. Feito com a direita, o mesmo texto dá a imagem espelhada.",
     abbreviations: "Abreviações: {list}.",
     inc: "aumento: 2 {sc} no mesmo ponto",
     dec: "diminuição: 2 pontos fechados juntos como um {sc}",
@@ -217,6 +222,7 @@ pub(super) static FRENCH: Prose = Prose {
     marker: "un marqueur de mailles",
     needle: "une aiguille à laine",
     stuffing: "du rembourrage",
+    left_handed: "Pour gauchers : tenez le crochet de la main gauche et travaillez chaque tour de gauche à droite. Fait de la main droite, le même texte donne l'image en miroir.",
     abbreviations: "Abréviations : {list}.",
     inc: "augmentation : 2 {sc} dans la même maille",
     dec: "diminution : 2 mailles rabattues ensemble en une {sc}",
@@ -257,6 +263,7 @@ pub(super) static GERMAN: Prose = Prose {
     marker: "ein Maschenmarkierer",
     needle: "eine Wollnadel",
     stuffing: "Füllwatte",
+    left_handed: "Für Linkshänder: die Nadel in der linken Hand halten und jede Runde von links nach rechts häkeln. Rechtshändig gehäkelt ergibt derselbe Text das Spiegelbild.",
     abbreviations: "Abkürzungen: {list}.",
     inc: "Zunahme: 2 {sc} in eine Masche",
     dec: "Abnahme: 2 Maschen als eine {sc} zusammen abmaschen",
@@ -297,6 +304,7 @@ pub(super) static NORWEGIAN: Prose = Prose {
     marker: "en maskemarkør",
     needle: "en stoppenål",
     stuffing: "vatt",
+    left_handed: "For venstrehendte: hold nålen i venstre hånd og hekle hver omgang fra venstre mot høyre. Heklet med høyre hånd gir den samme teksten speilbildet.",
     abbreviations: "Forkortelser: {list}.",
     inc: "økning: 2 {sc} i samme maske",
     dec: "felling: 2 masker heklet sammen til én {sc}",

@@ -20,7 +20,7 @@ pub use emit::Origin;
 
 use crate::diag::{Code as Finding, Diagnostic, Sink, Span};
 use crate::ir::machine::{CarrierId, Code, Instruction, Machine, Report, execute};
-use crate::ir::{Pattern, Program};
+use crate::ir::{Hand, Pattern, Program};
 use bench::Bench;
 use emit::Emitter;
 use refuse::Reason;
@@ -64,6 +64,13 @@ pub fn lower(
     options: &Options,
     sink: &mut Sink<'_>,
 ) -> Option<Lowered> {
+    if program.maker.hand == Hand::Left {
+        let message =
+            format!("the pattern is for left-handed work, and `{}` knits its mirror image", machine.name);
+        let help = "a machine knows no hand: build it without `hand = left`";
+        sink.push(Diagnostic::new(Finding::ForHands, message).help(help));
+        return None;
+    }
     let mut code = header(program, machine);
     let mut origins = Vec::new();
     let pieces = program.pattern.parts.iter().map(|part| u64::from(part.copies)).sum::<u64>();

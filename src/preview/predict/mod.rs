@@ -11,8 +11,9 @@ mod start;
 mod system;
 
 use super::net::{NONE, Net, nets};
-use super::scene::{MAX_STITCHES, Refused};
+use super::scene::{MAX_STITCHES, Refused, as_right_handed};
 use crate::diag::Sink;
+use crate::ir::Graph;
 use crate::ir::verify::Verified;
 use glam::DVec3;
 use system::System;
@@ -41,8 +42,12 @@ pub fn fit(program: &Verified<'_>, gauge: [f64; 2], sink: &Sink<'_>) -> Result<O
     let nets = nets(program, MAX_STITCHES);
     let (places, rest) = places(&nets, gauge, sink)?;
     let target: Vec<Vec<DVec3>> =
-        program.graphs.iter().map(|graph| graph.nodes.iter().map(|node| node.position).collect()).collect();
+        program.graphs.iter().map(|graph| positions(&as_right_handed(graph, program.maker.hand))).collect();
     Ok(compare::fit(&nets, &places, &target, gauge[1], rest))
+}
+
+fn positions(graph: &Graph) -> Vec<DVec3> {
+    graph.nodes.iter().map(|node| node.position).collect()
 }
 
 /// Predicted places of the loops of every piece.
