@@ -243,6 +243,9 @@ pub(crate) struct Bench {
     /// Print the paper's Tables 1 to 3 beside our numbers
     #[arg(long)]
     pub(crate) paper: bool,
+    /// Instead print what the option `readability` does to the patterns of these shape files
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with = "paper")]
+    pub(crate) readability: Vec<String>,
     /// Write all numbers to a file as JSON; `-` is stdout
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<String>,

@@ -5,8 +5,10 @@
 //! row by row (`weave`). In the end all nodes settle on the surface (`relax`).
 
 pub mod capunaman;
+mod even;
 mod finish;
 mod first_row;
+mod marker;
 mod options;
 mod paper;
 mod relax;
@@ -216,7 +218,7 @@ impl<'s> Ground<'s> {
         let girths: Vec<f64> =
             (0..rounds).map(|k| first_row::turn_length(surface, rows, k) / self.gauge.width).collect();
         let ring = self.poles[0].map(|_| first_row::ring_size(surface, rows, self.gauge));
-        let counts = symmetric::plan_counts(&girths, ring)?;
+        let counts = symmetric::plan_counts(&girths, ring, options.ease())?;
         let start = counts[0] as usize;
         let mut sheet = Sheet::new(self.gauge);
         first_row::lay(surface, &mut sheet, first_row::centered_places(counts[0]), rows);

@@ -47,6 +47,9 @@ pub struct Options {
     /// The hand that holds the hook, `right` or `left`; where nothing is said, what the shape file says, and else the right
     /// one. For the left hand the pattern is that of the mirror image, so that the object comes out as designed.
     pub hand: Option<Hand>,
+    /// How much pleasant words are worth, from 0 to 1; where nothing is said, what the shape file says, and else 0. Counts
+    /// change in fewer rounds, shapings lie at equal distances, and short rows are plain, at the price of fidelity.
+    pub readability: Option<f64>,
     /// The rules of the paper's own algorithm instead of ours; most other options then have no effect.
     #[serde(skip)]
     pub paper: bool,
@@ -71,6 +74,7 @@ impl Default for Options {
             tries: 4,
             symmetric: true,
             hand: None,
+            readability: None,
             paper: false,
             settle: false,
         }
@@ -81,7 +85,16 @@ impl Options {
     /// The options with what they leave open as a shape wishes it.
     #[must_use]
     pub fn granting(&self, wishes: &Wishes) -> Self {
-        Self { hand: self.hand.or(wishes.hand), ..self.clone() }
+        Self {
+            hand: self.hand.or(wishes.hand),
+            readability: self.readability.or(wishes.readability),
+            ..self.clone()
+        }
+    }
+
+    /// How much pleasant words are worth.
+    pub(super) fn ease(&self) -> f64 {
+        self.readability.unwrap_or(0.0)
     }
 
     /// Whom the pattern is for.
@@ -123,6 +136,7 @@ impl Options {
             (self.sweeps <= 100_000, "sweeps", "at most 100000"),
             ((1..=1000).contains(&self.tries), "tries", "from 1 to 1000"),
             (between(self.squareness, 0.0, 100.0), "squareness", "from 0 to 100"),
+            (between(self.ease(), 0.0, 1.0), "readability", "from 0 to 1"),
         ]
         .into_iter()
         .find(|(fine, ..)| !fine)

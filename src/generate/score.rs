@@ -1,6 +1,6 @@
 //! How good a settled sheet is, in one number, so that the best of several tries can be kept.
 
-use super::sheet::{EdgeKind, Sheet, TileKind};
+use super::sheet::{EdgeKind, Sheet, ShortRow, TileKind, Work};
 
 /// Mean length error, its root mean square, and skew that weigh the same.
 const USUAL_LENGTH: f64 = 0.04;
@@ -9,6 +9,9 @@ const USUAL_SKEW: f64 = 0.09;
 /// A signed mean over this makes the whole too large or too small; its price.
 const BIAS_FREE: f64 = 0.004;
 const BIAS: f64 = 100.0;
+/// Words a stitch that are usual, and their weight with full ease.
+const USUAL_WORDS: f64 = 0.12;
+const WORDS: f64 = 0.6;
 /// Price of an inverted tile as a share of all tiles, and of one at all.
 const INVERTED: f64 = 40.0;
 const ANY_INVERTED: f64 = 0.5;
@@ -21,6 +24,17 @@ pub(super) struct Score {
 }
 
 impl Score {
+    /// The same with so much weight on few words: runs of stitches, and four words for each short row.
+    pub(super) fn with_words(self, sheet: &Sheet, ease: f64) -> Self {
+        let kind = |work: &Work| work.stitch;
+        let changes =
+            |works: &[Work]| works.windows(2).filter(|pair| kind(&pair[0]) != kind(&pair[1])).count();
+        let of = |row: &ShortRow| 4 + changes(&row.back) + changes(&row.forward);
+        let words = changes(&sheet.main) + sheet.short_rows.iter().map(of).sum::<usize>();
+        let share = words as f64 / sheet.len().max(1) as f64;
+        Self { total: self.total + ease * WORDS * share / USUAL_WORDS, ..self }
+    }
+
     /// Mean absolute length error with its spread, and mean skew, each by its usual size; a bias and inverted tiles cost extra.
     pub(super) fn of(sheet: &Sheet) -> Self {
         let (mut length, mut sum, mut square) = (0.0, 0.0, 0.0);

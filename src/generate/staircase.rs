@@ -4,6 +4,7 @@
 //! follows that curve with integer levels: one level up is an increase, one down a decrease. Shaping has a price, keeps a
 //! distance from the shaping before, and never undoes that of the row below.
 
+use super::even;
 use super::sheet::Shaped;
 
 /// What happens at a base.
@@ -21,6 +22,50 @@ const PRICE: f64 = 1.5;
 const STACKED: f64 = 0.1;
 /// Part of the row's total that is never worth a stitch.
 const DEAD_BAND: f64 = 0.1;
+
+/// What a row is asked for beside its width.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Taste {
+    /// How much simpler words are worth, from 0 to 1.
+    pub ease: f64,
+    /// The first base of a new round, which is not worked together with the last of the one before.
+    pub marker: Option<usize>,
+}
+
+impl Taste {
+    /// Stitches that a row of `n` may have too few or too many before it is shaped. The total says how many are missing
+    /// from the whole row, so what waits is not lost: it comes with more of its kind, in one round instead of several.
+    fn dead_band(self, n: usize) -> f64 {
+        DEAD_BAND + self.ease * (WAITING_SHARE * n as f64).min(WAITING_MOST)
+    }
+
+    /// Price of a shaping.
+    fn price(self, n: usize) -> f64 {
+        PRICE * (1.0 + self.ease * (n as f64 / USUAL_ROW).min(DEARER))
+    }
+
+    /// What a shaping at base `i` costs more for those of the row below.
+    fn stacking(self, below: &[Shaped], i: usize) -> f64 {
+        let own = if below[i] == Shaped::No { 0.0 } else { STACKED };
+        if self.ease == 0.0 || !beside(below, i) { own } else { own + self.ease * RIDGE }
+    }
+
+    /// What a row may cost more, in squared stitches, if its shapings are spread evenly.
+    fn evenness(self, n: usize) -> f64 {
+        self.ease * EVEN * n as f64
+    }
+}
+
+/// Most stitches that wait with full ease: as a share of the row, and at all.
+const WAITING_SHARE: f64 = 0.06;
+const WAITING_MOST: f64 = 2.4;
+/// Stitches of a usual row, and how many times dearer shapings are in long ones with full ease.
+const USUAL_ROW: f64 = 15.0;
+const DEARER: f64 = 2.0;
+/// Price of a shaping beside one of the row below, with full ease.
+const RIDGE: f64 = 3.0;
+/// Mean squared distance from where a shaping belongs that evenly spread ones may have more with full ease.
+const EVEN: f64 = 0.6;
 /// Levels on either side of the curve that are tried.
 const REACH: i32 = 4;
 const LEVELS: usize = 2 * REACH as usize + 1;
@@ -43,9 +88,10 @@ pub(crate) struct Staircase {
 impl Staircase {
     /// Plans a row. `gaps[i]` is the signed distance from the foot before to foot i in stitch widths, `below` tells
     /// how the bases themselves came about.
-    pub(crate) fn solve(&mut self, gaps: &[f64], below: &[Shaped]) {
+    pub(crate) fn solve(&mut self, gaps: &[f64], below: &[Shaped], taste: Taste) {
         let n = gaps.len();
-        self.fill_curve(gaps);
+        let goal = self.fill_curve(gaps, taste);
+        let full = taste.price(n);
         let total = self.curve.last().copied().unwrap_or(0.0).abs().max(1.0);
         let cooldown = ((n as f64 / (2.0 * total)) as usize).min(COOLDOWN);
         // Even where every base is shaped, a decrease needs a plain stitch to join.
@@ -61,6 +107,7 @@ impl Staircase {
         for i in 0..n {
             next.fill(f64::MAX);
             let here = center(i);
+            let price = full + taste.stacking(below, i);
             for level in 0..LEVELS {
                 let q = middle + level as i32 - REACH;
                 for wait in 0..=rested {
@@ -74,17 +121,20 @@ impl Staircase {
                         {
                             continue;
                         }
+                        if shaping == Shaping::Dec && taste.marker == Some(i) {
+                            continue;
+                        }
                         let to = q + step - here + REACH;
                         if !(0..LEVELS as i32).contains(&to) {
                             continue;
                         }
-                        let (wait_after, price) = if shaping == Shaping::Plain {
+                        let (wait_after, paid) = if shaping == Shaping::Plain {
                             (wait.saturating_sub(1), 0.0)
                         } else {
-                            (rested, if below[i] == Shaped::No { PRICE } else { PRICE + STACKED })
+                            (rested, price)
                         };
                         let off = self.curve[i] - f64::from(q + step);
-                        let total = so_far + off * off + price;
+                        let total = so_far + off * off + paid;
                         let state = to as usize * (COOLDOWN + 1) + wait_after;
                         if total < next[state] {
                             next[state] = total;
@@ -97,21 +147,49 @@ impl Staircase {
             middle = here;
         }
         self.trace_back(&cost, n);
+        if taste.ease > 0.0 && goal.abs() >= 2 {
+            let least = cost.iter().copied().fold(f64::MAX, f64::min);
+            let most = least + taste.evenness(n);
+            let row = even::Row {
+                curve: &self.curve,
+                below,
+                goal,
+                marker: taste.marker,
+                cooldown,
+                ridge: taste.ease * RIDGE,
+            };
+            if let Some(places) = row.spread(full, most) {
+                let kind = if goal > 0 { Shaping::Inc } else { Shaping::Dec };
+                self.plan.fill(Shaping::Plain);
+                let mut level = 0.0;
+                for i in 0..n {
+                    if places.contains(i) {
+                        self.plan[i] = kind;
+                        level += f64::from(goal.signum());
+                    }
+                    self.rest[i] = self.curve[i] - level;
+                }
+            }
+        }
     }
 
     /// Sums the missing stitches, rounds the row's total and spreads what is left over evenly: as stretch, not carried on.
-    fn fill_curve(&mut self, gaps: &[f64]) {
+    fn fill_curve(&mut self, gaps: &[f64], taste: Taste) -> i32 {
         self.curve.clear();
         let mut sum = 0.0;
         self.curve.extend(gaps.iter().map(|gap| {
             sum += gap - 1.0;
             sum
         }));
-        let goal = (sum.abs() - DEAD_BAND).max(0.0).round().copysign(sum);
+        let band = taste.dead_band(gaps.len());
+        // What has waited is shaped away whole.
+        let missing = if sum.abs() - band < 0.5 { 0.0 } else { sum.abs() - DEAD_BAND };
+        let goal = missing.max(0.0).round().copysign(sum);
         let slope = (sum - goal) / gaps.len().max(1) as f64;
         for (i, s) in self.curve.iter_mut().enumerate() {
             *s -= slope * (i as f64 + 1.0);
         }
+        goal as i32
     }
 
     fn trace_back(&mut self, cost: &[f64; STATES], n: usize) {
@@ -143,8 +221,14 @@ impl Staircase {
     }
 }
 
+/// True where a base or one beside it is of a shaping of the row below: stacked ones draw a ridge.
+pub(super) fn beside(below: &[Shaped], i: usize) -> bool {
+    let near = below.get(i.saturating_sub(1)..(i + 2).min(below.len()));
+    near.is_some_and(|near| near.iter().any(|shaped| *shaped != Shaped::No))
+}
+
 /// A shaping may stand at base `i`, and does not undo the row below.
-fn allowed(shaping: Shaping, wait: usize, cooldown: usize, below: &[Shaped], i: usize) -> bool {
+pub(super) fn allowed(shaping: Shaping, wait: usize, cooldown: usize, below: &[Shaped], i: usize) -> bool {
     match shaping {
         Shaping::Plain => true,
         Shaping::Inc => (wait == 0 || cooldown == 0) && below[i] != Shaped::Dec,
@@ -158,7 +242,7 @@ mod tests {
 
     fn net(gaps: &[f64]) -> (usize, usize) {
         let mut staircase = Staircase::default();
-        staircase.solve(gaps, &vec![Shaped::No; gaps.len()]);
+        staircase.solve(gaps, &vec![Shaped::No; gaps.len()], Taste::default());
         let count = |kind| staircase.plan.iter().filter(|shaping| **shaping == kind).count();
         (count(Shaping::Inc), count(Shaping::Dec))
     }
@@ -179,7 +263,7 @@ mod tests {
     #[test]
     fn decreases_keep_a_plain_stitch_between_them() {
         let mut staircase = Staircase::default();
-        staircase.solve(&[0.5; 12], &[Shaped::No; 12]);
+        staircase.solve(&[0.5; 12], &[Shaped::No; 12], Taste::default());
         for pair in staircase.plan.windows(2) {
             assert_ne!(pair, [Shaping::Dec, Shaping::Dec]);
         }

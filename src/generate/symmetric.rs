@@ -15,6 +15,9 @@ const LOPSIDED: f64 = 0.25;
 const OUT_OF_STEP: f64 = 0.5;
 const PART_OF_STEP: f64 = 0.2;
 const OUT_OF_SIX: f64 = 0.05;
+/// How many times dearer a shaped round is with full ease, and one out of step with the others: more rounds are plain then.
+const DEARER: f64 = 40.0;
+const STEP_DEARER: f64 = 4.0;
 /// How far a round may be from its girth.
 const BAND: f64 = 0.16;
 const BAND_LEAST: f64 = 3.0;
@@ -22,7 +25,7 @@ const BAND_MOST: f64 = 160.0;
 
 /// Stitches of each round, the first row included; `None` when no sequence of clean rounds follows the girth.
 /// `ring` fixes the first round.
-pub(crate) fn plan_counts(girths: &[f64], ring: Option<u32>) -> Option<Vec<u32>> {
+pub(crate) fn plan_counts(girths: &[f64], ring: Option<u32>, ease: f64) -> Option<Vec<u32>> {
     let band = |k: usize| -> (u32, u32) {
         if k == 0
             && let Some(ring) = ring
@@ -64,7 +67,7 @@ pub(crate) fn plan_counts(girths: &[f64], ring: Option<u32>) -> Option<Vec<u32>>
             // Shapings come in a number that divides the round.
             for repeats in 1..=(high.saturating_sub(n)).max(n.saturating_sub(low)).min(n) {
                 if n.is_multiple_of(repeats) {
-                    let price = shaping_price(repeats, ring);
+                    let price = shaping_price(repeats, ring, ease);
                     consider(n + repeats, price);
                     if n / repeats >= 2 {
                         consider(n - repeats, price);
@@ -89,7 +92,7 @@ pub(crate) fn plan_counts(girths: &[f64], ring: Option<u32>) -> Option<Vec<u32>>
     Some(counts)
 }
 
-fn shaping_price(repeats: u32, ring: Option<u32>) -> f64 {
+fn shaping_price(repeats: u32, ring: Option<u32>, ease: f64) -> f64 {
     let lopsided = if repeats < 4 { LOPSIDED / f64::from(repeats) } else { 0.0 };
     let odd = match ring {
         Some(ring) if repeats.is_multiple_of(ring) => 0.0,
@@ -98,7 +101,7 @@ fn shaping_price(repeats: u32, ring: Option<u32>) -> f64 {
         None if repeats.is_multiple_of(6) => 0.0,
         None => OUT_OF_SIX,
     };
-    PRICE + lopsided + odd
+    PRICE * (1.0 + DEARER * ease) + lopsided + odd * (1.0 + STEP_DEARER * ease)
 }
 
 /// Lays the rounds over the first row that the sheet holds. Positions are the regular ones on the helix.
@@ -221,7 +224,7 @@ mod tests {
     fn a_ball_grows_by_six() {
         let girths: Vec<f64> =
             (1..24).map(|k| 24.0 * 2.0 * math::sin(math::PI * f64::from(k) / 24.0)).collect();
-        let counts = plan_counts(&girths, Some(6)).unwrap();
+        let counts = plan_counts(&girths, Some(6), 0.0).unwrap();
         assert_eq!(counts[..6], [6, 12, 18, 24, 30, 36]);
         assert_eq!(counts[counts.len() - 1], 6);
         assert!(counts.iter().all(|n| n % 6 == 0), "{counts:?}");
@@ -229,11 +232,11 @@ mod tests {
 
     #[test]
     fn a_cylinder_keeps_its_girth() {
-        assert_eq!(plan_counts(&[37.7; 10], None).unwrap(), [38; 10]);
+        assert_eq!(plan_counts(&[37.7; 10], None, 0.0).unwrap(), [38; 10]);
     }
 
     #[test]
     fn a_funnel_too_steep_for_clean_rounds_has_no_plan() {
-        assert_eq!(plan_counts(&[10.0, 60.0, 10.0], None), None);
+        assert_eq!(plan_counts(&[10.0, 60.0, 10.0], None, 0.0), None);
     }
 }

@@ -78,7 +78,7 @@ pub(super) fn best(
         }
         let (options, turn) = variant(options, index);
         let Some(laid) = lay(&options, turn) else { continue };
-        let score = Score::of(&laid.sheet);
+        let score = Score::of(&laid.sheet).with_words(&laid.sheet, options.ease());
         if best.as_ref().is_none_or(|(so_far, _)| so_far.total.is_nan() || score.total < so_far.total - 1e-9)
         {
             best = Some((score, laid));

@@ -4,12 +4,13 @@
 //! The state is the ring: the open loops in working order. A batch works some or all of them once. What was decided in
 //! earlier rows is settled again within the window, so that gaps and missing heights are true when they are decided.
 
+use super::marker::Marker;
 use super::options::Options;
 use super::relax::{Effort, Ends, Mark, Relaxer};
 use super::rows::{Rows, row_speed};
 use super::sheet::{Edge, EdgeKind, Foot, Quad, Shaped, Sheet, ShortRow, TileKind, Work};
 use super::short_rows::{GAP, Planner, Rules};
-use super::staircase::{Shaping, Staircase};
+use super::staircase::{Shaping, Staircase, Taste};
 use crate::ir::{NodeId, Stitch};
 use crate::math;
 use crate::shape::ParametricSurface;
@@ -33,6 +34,10 @@ const STACKED_REACH: f64 = 3.0;
 const FADE: f64 = 0.6;
 /// Share of the usual price of short-row ends in the last two rows, so that the top comes out level.
 const LAST_ROWS_PRICE: f64 = 0.4;
+/// Stitches more that a pass of a short row may be off before it is shaped, with full ease.
+const PLAIN_PASSES: f64 = 1.5;
+/// How many times dearer the ends of short rows are with full ease.
+const FEWER_ENDS: f64 = 1.0;
 /// Fewest loops of a batch that short rows may lie on.
 const LEAST_RING: usize = 9;
 
@@ -73,6 +78,7 @@ pub(crate) struct Weaver<'s> {
     /// Recent short-row ends: place around the tube, weight.
     ends: Vec<(f64, f64)>,
     ring_center: Option<(DVec3, usize)>,
+    marker: Marker,
     range: [f64; 2],
     part_batch: bool,
     most: usize,
@@ -110,6 +116,7 @@ impl<'s> Weaver<'s> {
             last_foot: None,
             ends: Vec::new(),
             ring_center: ring_center.map(|pole| (pole, first_row)),
+            marker: Marker::new(options.ease() > 0.0, first_row),
             range,
             part_batch: false,
             most,
@@ -128,6 +135,7 @@ impl<'s> Weaver<'s> {
             let length = self.batch_length();
             self.part_batch = length < self.ring.len();
             self.marks.push(Mark::of(&self.sheet));
+            let marker = self.marker.within(length, self.ring.len());
             let rest = self.ring.split_off(length);
             let bases = std::mem::replace(&mut self.ring, rest);
             let worked = self.place_feet(&bases);
@@ -135,13 +143,16 @@ impl<'s> Weaver<'s> {
                 self.ring.splice(0..0, bases);
                 break;
             }
-            let (tops, top_base) = self.work(&bases[..worked]);
+            let (tops, top_base) = self.work(&bases[..worked], marker);
             self.settle_window();
+            let marked = marker.and_then(|base| top_base.iter().position(|id| *id == bases[base]));
+            let first = marked.map(|top| tops[top]);
             if self.options.short_rows && tops.len() >= LEAST_RING {
                 self.fill_up(tops, &top_base);
             } else {
                 self.ring.extend_from_slice(&tops);
             }
+            self.marker.moved(length, first, &self.ring);
             if self.sheet.len() > self.most || !self.sheet.point.last().is_some_and(|p| p.is_finite()) {
                 return Outcome::Runaway;
             }
@@ -243,7 +254,7 @@ impl<'s> Weaver<'s> {
     }
 
     /// Works one row over the bases: shaping, tops, edges and tiles. Returns the tops and the base of each.
-    fn work(&mut self, bases: &[NodeId]) -> (Vec<NodeId>, Vec<NodeId>) {
+    fn work(&mut self, bases: &[NodeId], marker: Option<usize>) -> (Vec<NodeId>, Vec<NodeId>) {
         let feet = std::mem::take(&mut self.feet);
         let feet = &feet[..bases.len()];
         self.gaps.clear();
@@ -258,7 +269,8 @@ impl<'s> Weaver<'s> {
             let Staircase { plan, rest, .. } = &mut self.staircase;
             super::paper::shape(&self.gaps, &self.below, plan, rest);
         } else {
-            self.staircase.solve(&self.gaps, &self.below);
+            let taste = Taste { ease: self.options.ease(), marker };
+            self.staircase.solve(&self.gaps, &self.below, taste);
         }
         let mut tops = Vec::with_capacity(bases.len() + 8);
         let mut top_base = Vec::with_capacity(bases.len() + 8);
@@ -386,6 +398,7 @@ impl<'s> Weaver<'s> {
         if self.marks.len() as f64 > self.rows.count - 2.0 {
             rules.end_price *= LAST_ROWS_PRICE;
         }
+        rules.end_price *= 1.0 + FEWER_ENDS * self.options.ease();
         let mut runs = Vec::new();
         self.planner.solve(&missing, &extra, &stretch.cut, &rules, &mut runs);
         for run in runs.iter().rev() {
@@ -439,8 +452,9 @@ impl<'s> Weaver<'s> {
     /// One pass of a short row over `bases`, from left to right whatever its direction of work.
     fn pass(&mut self, bases: &[NodeId], turn: TileKind) -> (Vec<NodeId>, Vec<Work>) {
         const LEAK: f64 = 0.9;
-        const THRESHOLD: f64 = 0.5;
         const COOLDOWN: i32 = 4;
+        // Short rows are easier to work without shaping.
+        let threshold = 0.5 + PLAIN_PASSES * self.options.ease();
         let n = bases.len();
         let reach = reach(n);
         let feet: Vec<Foot> = (0..n)
@@ -467,11 +481,11 @@ impl<'s> Weaver<'s> {
                 if wait <= 0 && i + 2 < n {
                     let (own, left) =
                         (self.sheet.shaped[bases[i] as usize], self.sheet.shaped[bases[i - 1] as usize]);
-                    if error > THRESHOLD && own != Shaped::Dec {
+                    if error > threshold && own != Shaped::Dec {
                         plan = Shaping::Inc;
                         error -= 1.0;
                         wait = COOLDOWN;
-                    } else if error < -THRESHOLD && own != Shaped::Inc && left != Shaped::Inc {
+                    } else if error < -threshold && own != Shaped::Inc && left != Shaped::Inc {
                         plan = Shaping::Dec;
                         error += 1.0;
                         wait = COOLDOWN;

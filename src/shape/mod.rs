@@ -151,4 +151,6 @@ pub struct Shape {
 pub struct Wishes {
     /// The hand that holds the hook.
     pub hand: Option<Hand>,
+    /// How much pleasant words are worth, from 0 to 1.
+    pub readability: Option<f64>,
 }

@@ -25,6 +25,7 @@ mod patterns;
 mod preview;
 mod programs;
 mod properties;
+mod readability;
 mod reader;
 mod render;
 mod roundtrip;

@@ -38,7 +38,7 @@ fn shape(toml: &str) -> Shape {
     of(&source, &mut sources)
 }
 
-fn at(path: &Path) -> Shape {
+pub(crate) fn at(path: &Path) -> Shape {
     let mut sources = Sources::new(&load);
     let source = sources.open(path.to_str().expect("plain names")).expect("readable");
     of(&source, &mut sources)
@@ -58,7 +58,7 @@ fn with(hand: Hand) -> Options {
     options
 }
 
-fn make(shape: &Shape, options: &Options) -> Program {
+pub(crate) fn make(shape: &Shape, options: &Options) -> Program {
     let mut sink = Sink::new();
     let program = picot::program(shape, options, &mut sink);
     let program = program.unwrap_or_else(|| panic!("{}: {:?}", shape.name, sink.diagnostics()));

@@ -4,7 +4,7 @@ use glam::{DQuat, DVec2, DVec3};
 use picot::diag::{Severity, Sink};
 use picot::generate::{Options, generate};
 use picot::ir::verify::verify;
-use picot::ir::{Finish, Gauge, Maker, Pattern, Program};
+use picot::ir::{Finish, Gauge, Hand, Maker, Pattern, Program};
 use picot::lower::trace;
 use picot::shape::{Bezier, End, Interpolation, Profile, Section, Sweep, Tube, TubeSpec};
 use std::collections::BTreeMap;
@@ -173,12 +173,19 @@ fn run(count: u64) {
     let (mut made, mut stitches) = (0, 0);
     let mut refused: BTreeMap<String, u32> = BTreeMap::new();
     let mut wrong: Vec<(usize, String)> = Vec::new();
-    // One surface in eight gets all the tries that the options allow.
+    // One surface in eight gets all the tries that the options allow, and some of the others are for special makers.
     let once = Options { tries: 1, ..Options::default() };
     let often = Options::default();
+    let simple = Options { readability: Some(1.0), ..once.clone() };
+    let left = Options { hand: Some(Hand::Left), ..once.clone() };
     for index in 0..count {
         let (spec, gauge) = surface(&mut random);
-        let options = if index % 8 == 0 { &often } else { &once };
+        let options = match index % 8 {
+            0 => &often,
+            2 => &left,
+            4 => &simple,
+            _ => &once,
+        };
         let outcome = catch_unwind(AssertUnwindSafe(|| compile(&spec, gauge, options)));
         match outcome.unwrap_or_else(|_| Outcome::Wrong("it panicked".into())) {
             Outcome::Pattern { stitches: more } => (made, stitches) = (made + 1, stitches + more),

@@ -1,6 +1,7 @@
 //! `picot bench`: times of every stage, and the paper's tables beside our numbers.
 
 mod printed;
+mod reading;
 mod tables;
 
 use super::args::{Algorithm, Bench};
@@ -59,6 +60,9 @@ fn is_generator(stage: &str) -> bool {
 }
 
 pub(crate) fn run(arguments: &Bench, report: Report) -> Result<Status, Failure> {
+    if !arguments.readability.is_empty() {
+        return reading::run(&arguments.readability, arguments.json.as_deref(), report);
+    }
     let bar = Bar::new((PRINTED.len() * SIZES.len()) as u64, report.quiet());
     let mut cases = Vec::new();
     for printed in &PRINTED {
