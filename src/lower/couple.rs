@@ -44,15 +44,25 @@ pub(super) fn couple(ring: &[DVec3], other: &[DVec3]) -> Vec<usize> {
         .min_by(|a, b| other[*a].distance_squared(ring[0]).total_cmp(&other[*b].distance_squared(ring[0])));
     let around = nearest.unwrap_or(0);
     let window = (MOST_WORK / (n * m * 2 * most * most).max(1)).clamp(3.min(m), m);
+    let distances: Vec<f64> = ring.iter().flat_map(|a| other.iter().map(|b| a.distance(*b))).collect();
+    let mut table = Vec::new();
     let mut best: Option<(f64, usize, usize, Groups)> = None;
+    // What the start at the nearest point costs, no other one need exceed.
+    let first = straight(n, m, most, f64::INFINITY, &mut table, |i, j| {
+        distances.get(i * m + (around + j) % m).copied().unwrap_or(f64::INFINITY)
+    });
+    let mut bound = first.map_or(f64::INFINITY, |first| first.0 * (1.0 + 1e-9) + 1e-9);
     // A group of points may lie across the place where the ring is cut.
     for turn in 0..most.min(n) {
         for shift in 0..window {
             let start = (around + m + shift - window / 2) % m;
-            let at = |i: usize, j: usize| ring[(n + i - turn) % n].distance(other[(start + j) % m]);
-            if let Some((cost, groups)) = straight(n, m, most, at)
+            let row = |i: usize| if i < turn { n + i - turn } else { i - turn };
+            let column = |j: usize| if start + j < m { start + j } else { start + j - m };
+            let at = |i: usize, j: usize| distances[row(i) * m + column(j)];
+            if let Some((cost, groups)) = straight(n, m, most, bound, &mut table, at)
                 && best.as_ref().is_none_or(|best| cost < best.0 - 1e-9)
             {
+                bound = bound.min(cost);
                 best = Some((cost, turn, start, groups));
             }
         }
@@ -73,26 +83,30 @@ pub(super) fn couple(ring: &[DVec3], other: &[DVec3]) -> Vec<usize> {
     partner
 }
 
-/// The best grouping of two open rows: total distance, and the sizes of groups.
+/// The best grouping of two open rows: total distance, and the sizes of groups. `None` where it would cost more than the
+/// bound. The table is room to work in.
 fn straight(
     n: usize,
     m: usize,
     most: usize,
+    bound: f64,
+    cost: &mut Vec<(f64, u32, u32)>,
     distance: impl Fn(usize, usize) -> f64,
 ) -> Option<(f64, Groups)> {
     let width = m + 1;
-    let mut cost = vec![(f64::INFINITY, 0_usize, 0_usize); (n + 1) * width];
+    cost.clear();
+    cost.resize((n + 1) * width, (f64::INFINITY, 0, 0));
     cost[0].0 = 0.0;
     for i in 0..n {
         for j in 0..m {
             let here = cost[i * width + j].0;
-            if here == f64::INFINITY {
+            if here > bound || here == f64::INFINITY {
                 continue;
             }
             let mut offer = |mine: usize, theirs: usize, sum: f64| {
                 let place = &mut cost[(i + mine) * width + j + theirs];
                 if here + sum < place.0 {
-                    *place = (here + sum, mine, theirs);
+                    *place = (here + sum, mine as u32, theirs as u32);
                 }
             };
             let mut sum = 0.0;
@@ -110,10 +124,14 @@ fn straight(
         }
     }
     let total = cost[n * width + m].0;
+    if total > bound {
+        return None;
+    }
     let mut groups = Vec::with_capacity(n.max(m));
     let (mut i, mut j) = (n, m);
     while (i, j) != (0, 0) {
         let (value, mine, theirs) = cost[i * width + j];
+        let (mine, theirs) = (mine as usize, theirs as usize);
         if value == f64::INFINITY || mine == 0 {
             return None;
         }

@@ -11,6 +11,11 @@ const AROUND: usize = 64;
 const ALONG: u32 = 48;
 /// How far a branch that begins on the surface of its parent may be continued backward into it, in its own girths.
 const BACKWARD: f64 = 0.75;
+/// How much longer than on average a line of a limb may be for a change of u; how exactly feet are followed along it (in u
+/// and v); and steps by which the place is found where it leaves its parent.
+const STRETCH: f64 = 2.0;
+const NEARLY: f64 = 1e-5;
+const BETWEEN: u32 = 5;
 /// Depth (mm) at which tubes that touch begin to cross.
 const TOUCH: f64 = 1e-3;
 /// Share of a branch next to its rim that is not asked whether it lies in the parent.
@@ -105,16 +110,19 @@ impl<S: ParametricSurface> Branch<S> {
         let mut places = Vec::with_capacity(AROUND);
         let mut feet = Vec::with_capacity(AROUND);
         let mut lost = 0;
-        let step = 1.0 / f64::from(2 * ALONG);
+        let length = super::length_along(&surface, 0.0, 0.0..1.0, 8).max(1e-9);
         for k in 0..AROUND {
             let v = k as f64 / AROUND as f64;
             let mut foot = parent.foot(surface.point(0.0, v));
-            let mut near = 0.0;
-            let mut far = None;
-            for u in (0..=2 * ALONG).map(|k| f64::from(k) * step) {
-                let next = parent.refine(surface.point(u, v), foot.u, foot.v);
+            let next_to = |u: f64, foot: &Foot| parent.refine_to(surface.point(u, v), foot.u, foot.v, NEARLY);
+            let (mut near, mut far) = (0.0, None);
+            while near < 1.0 {
+                // As far as the line may go before it can be out of reach, if it does not stretch.
+                let safe = (reach - foot.distance.abs()) / (STRETCH * length);
+                let u = (near + safe.max(0.5 / f64::from(ALONG))).min(1.0);
+                let next = next_to(u, &foot);
                 if next.distance > reach {
-                    far = Some(u);
+                    far = Some((u, next.distance));
                     break;
                 }
                 (near, foot) = (u, next);
@@ -125,10 +133,12 @@ impl<S: ParametricSurface> Branch<S> {
                 feet.push(foot);
                 continue;
             };
-            for _ in 0..16 {
-                let middle = 0.5 * (near + far);
-                let next = parent.refine(surface.point(middle, v), foot.u, foot.v);
-                if next.distance > reach { far = middle } else { (near, foot) = (middle, next) }
+            for _ in 0..BETWEEN {
+                // The distance grows nearly evenly.
+                let share = (reach - foot.distance) / (far.1 - foot.distance).max(1e-12);
+                let middle = near + (far.0 - near) * share.clamp(0.05, 0.95);
+                let next = next_to(middle, &foot);
+                if next.distance > reach { far = (middle, next.distance) } else { (near, foot) = (middle, next) }
             }
             places.push(near);
             feet.push(foot);
@@ -140,7 +150,6 @@ impl<S: ParametricSurface> Branch<S> {
         }
         places.iter_mut().filter(|place| place.is_nan()).for_each(|place| *place = last);
         let girth = super::girth(&surface, mean(&places), 32);
-        let length = super::length_along(&surface, 0.0, 0.0..1.0, 8).max(1e-9);
         Ok(Self::along(surface, places, &feet, [girth, length], [width, give]))
     }
 

@@ -87,7 +87,12 @@ impl<'s> Solid<'s> {
     }
 
     /// The same from a place near by.
-    pub(crate) fn refine(&self, point: DVec3, mut u: f64, mut v: f64) -> Foot {
+    pub(crate) fn refine(&self, point: DVec3, u: f64, v: f64) -> Foot {
+        self.refine_to(point, u, v, 1e-12)
+    }
+
+    /// The same to a tolerance in u and v.
+    pub(crate) fn refine_to(&self, point: DVec3, mut u: f64, mut v: f64, tolerance: f64) -> Foot {
         let mut jet = self.jet(u, v);
         let mut least = jet.point.distance_squared(point);
         for _ in 0..STEPS {
@@ -111,7 +116,7 @@ impl<'s> Solid<'s> {
                 }
                 step = (0.4 * step.0, 0.4 * step.1);
             }
-            if !moved || step.0.abs().max(step.1.abs()) < 1e-12 {
+            if !moved || step.0.abs().max(step.1.abs()) < tolerance {
                 break;
             }
         }

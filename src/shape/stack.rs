@@ -12,13 +12,33 @@ use glam::DVec3;
 pub struct Stack {
     /// u of each row of samples.
     places: Vec<f64>,
-    /// Rows of `around` samples, one after the other.
+    /// What does not depend on the sample, for each stretch between two rows.
+    stretches: Vec<Stretch>,
+    /// Rows of `around` samples, one after the other; before each the last of the row, behind it the first two.
     samples: Vec<DVec3>,
     around: usize,
     ends: [End; 2],
     /// Length from end to end, mean over v, in the unit of the loops.
     length: f64,
 }
+
+/// Slopes of a cubic over two rows, from values at up to four rows.
+#[derive(Clone, Copy, Debug, Default)]
+struct Stretch {
+    /// Weights of the outer row, the near and the far row in the slope at the near one; and which row is the outer one,
+    /// turned by how many samples.
+    ends: [Outer; 2],
+}
+
+/// One end of a stretch.
+#[derive(Clone, Copy, Debug, Default)]
+struct Outer {
+    near: [f64; 3],
+    row: Option<(u32, u32)>,
+}
+
+/// Samples that each row has beside its own.
+const BESIDE: usize = 3;
 
 /// Most rows of samples.
 const MOST_LOOPS: usize = 100_000;
@@ -72,8 +92,18 @@ impl Stack {
             *place /= total;
         }
         let ends = poles.map(|pole| if pole.is_some() { End::Closed } else { End::Open });
-        let samples: Vec<DVec3> = kept.concat();
-        samples.iter().all(|p| p.is_finite()).then_some(Self { places, samples, around, ends, length: total })
+        let mut samples = Vec::with_capacity(kept.len() * (around + BESIDE));
+        for row in &kept {
+            samples.push(row[around - 1]);
+            samples.extend(row);
+            samples.extend(&row[..BESIDE - 1]);
+        }
+        if !samples.iter().all(|p| p.is_finite()) {
+            return None;
+        }
+        let mut stack = Self { places, stretches: Vec::new(), samples, around, ends, length: total };
+        stack.stretches = stack.find_stretches();
+        Some(stack)
     }
 
     /// How the ends are closed.
@@ -88,7 +118,7 @@ impl Stack {
 
     /// The rows of samples, poles included, from start to end.
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[DVec3]> {
-        self.samples.chunks_exact(self.around)
+        self.samples.chunks_exact(self.around + BESIDE).map(|row| &row[1..=self.around])
     }
 
     /// The places of the rows in u.
@@ -98,8 +128,10 @@ impl Stack {
 
     /// Replaces the samples, row by row.
     pub(super) fn set(&mut self, f: impl Fn(usize, usize) -> DVec3) {
-        for (i, sample) in self.samples.iter_mut().enumerate() {
-            *sample = f(i / self.around, i % self.around);
+        for (i, row) in self.samples.chunks_exact_mut(self.around + BESIDE).enumerate() {
+            for (k, sample) in row.iter_mut().enumerate() {
+                *sample = f(i, (k + self.around - 1) % self.around);
+            }
         }
     }
 
@@ -115,6 +147,7 @@ impl Stack {
             *place /= total;
         }
         self.length = total;
+        self.stretches = self.find_stretches();
     }
 
     /// Row `i` of the stack for the cubic: beyond a pole the other side of the next loop, beyond an open end nothing.
@@ -131,6 +164,26 @@ impl Stack {
         Some((self.places[i as usize], i as usize, 0))
     }
 
+    /// A slope is that of the parabola through three rows.
+    fn find_stretches(&self) -> Vec<Stretch> {
+        let stretch = |(i, pair): (usize, &[f64])| {
+            let (start, end) = (pair[0], pair[1]);
+            let width = end - start;
+            let outer = |row: Option<(f64, usize, usize)>, sign: f64| match row {
+                Some((at, row, turn)) => {
+                    let (h0, h1) = (if sign > 0.0 { start - at } else { at - end }, width);
+                    let sum = h0 + h1;
+                    let near = [-h1 / (h0 * sum), (h1 - h0) / (h0 * h1), h0 / (h1 * sum)];
+                    Outer { near: near.map(|weight| sign * weight), row: Some((row as u32, turn as u32)) }
+                }
+                None => Outer { near: [0.0, -sign / width, sign / width], row: None },
+            };
+            let i = i as isize;
+            Stretch { ends: [outer(self.row(i - 1), 1.0), outer(self.row(i + 2), -1.0)] }
+        };
+        self.places.windows(2).enumerate().map(stretch).collect()
+    }
+
     /// Weights of up to four rows for point and slope at u.
     fn weights(&self, u: f64) -> [(usize, usize, f64, f64); 4] {
         let last = self.places.len() - 1;
@@ -138,8 +191,6 @@ impl Stack {
         let (start, end) = (self.places[i], self.places[i + 1]);
         let width = end - start;
         let t = (u - start) / width;
-        let row = |k: isize| self.row(i as isize + k);
-        let (before, after) = (row(-1), row(2));
         // Hermite basis with slopes by the unit of u; beyond an open end the line goes on straight.
         let (value, slope) = if (0.0..=1.0).contains(&t) {
             let (t2, t3) = (t * t, t * t * t);
@@ -164,34 +215,17 @@ impl Stack {
         };
         let mut rows =
             [(i, 0, value[0], slope[0]), (i + 1, 0, value[2], slope[2]), (i, 0, 0.0, 0.0), (i, 0, 0.0, 0.0)];
-        // A slope is that of the parabola through three rows.
-        let mut add = |near: [f64; 3], outer: Option<(usize, usize)>, order: [usize; 2], at: usize| {
-            let [w_out, w_here, w_next] = near;
-            let (v, s) = (value[at], slope[at]);
-            rows[order[0]].2 += w_here * v;
-            rows[order[0]].3 += w_here * s;
-            rows[order[1]].2 += w_next * v;
-            rows[order[1]].3 += w_next * s;
-            if let Some((row, turn)) = outer {
-                let slot = if at == 1 { 2 } else { 3 };
-                rows[slot] = (row, turn, w_out * v, w_out * s);
+        for (side, outer) in self.stretches[i].ends.iter().enumerate() {
+            let [w_out, w_here, w_next] = outer.near;
+            let (v, s) = (value[2 * side + 1], slope[2 * side + 1]);
+            let (here, next) = (side, 1 - side);
+            rows[here].2 += w_here * v;
+            rows[here].3 += w_here * s;
+            rows[next].2 += w_next * v;
+            rows[next].3 += w_next * s;
+            if let Some((row, turn)) = outer.row {
+                rows[2 + side] = (row as usize, turn as usize, w_out * v, w_out * s);
             }
-        };
-        match before {
-            Some((u0, row, turn)) => {
-                let (h0, h1) = (start - u0, width);
-                let sum = h0 + h1;
-                add([-h1 / (h0 * sum), (h1 - h0) / (h0 * h1), h0 / (h1 * sum)], Some((row, turn)), [0, 1], 1);
-            }
-            None => add([0.0, -1.0 / width, 1.0 / width], None, [0, 1], 1),
-        }
-        match after {
-            Some((u3, row, turn)) => {
-                let (h1, h2) = (width, u3 - end);
-                let sum = h1 + h2;
-                add([h1 / (h2 * sum), (h2 - h1) / (h1 * h2), -h2 / (h1 * sum)], Some((row, turn)), [1, 0], 3);
-            }
-            None => add([0.0, 1.0 / width, -1.0 / width], None, [1, 0], 3),
         }
         rows
     }
@@ -220,13 +254,12 @@ impl Stack {
             if value == 0.0 && rise == 0.0 {
                 continue;
             }
-            let base = row * count;
-            let first = j + turn + count - 1;
+            let column = if j + turn < count { j + turn } else { j + turn - count };
+            let first = row * (count + BESIDE) + column;
             let (mut point, mut dv) = (DVec3::ZERO, DVec3::ZERO);
-            for k in 0..4 {
-                let sample = self.samples[base + (first + k) % count];
-                point += sample * along[k];
-                dv += sample * slope[k];
+            for (sample, (along, slope)) in self.samples[first..first + 4].iter().zip(along.iter().zip(&slope)) {
+                point += *sample * *along;
+                dv += *sample * *slope;
             }
             jet.point += point * value;
             jet.du += point * rise;

@@ -2,6 +2,7 @@
 
 use super::divide::Division;
 use super::ends::{Ends, Tip};
+use super::field::Flows;
 use super::levels::Levels;
 use super::limb::{self, Root};
 use super::tree::{Limb, Tree};
@@ -38,7 +39,7 @@ const APART: f64 = 1.5;
 const LEAP: f64 = 3.0;
 /// Tubes that are larger than this against their mesh do not run along it; and the samples by which that is seen.
 const MOST_AREA: f64 = 1.25;
-const SAMPLES: [u32; 2] = [48, 32];
+const SAMPLES: [u32; 2] = [16, 24];
 /// A limb leaves the surface that it grows from where it lies this far (stitches) from it.
 const LEAVES: f64 = 0.8;
 /// How far (stitches) the first row of a limb may lie off the rim in which it meets its parent.
@@ -87,6 +88,18 @@ pub struct Cut {
     pub ends: Vec<(DVec3, bool)>,
     /// Limbs too short to be made, by their tips.
     pub dropped: Vec<DVec3>,
+}
+
+/// What is to be done with a mesh.
+enum Next {
+    /// It begins elsewhere.
+    Start,
+    /// It has one more end.
+    End,
+    /// The limbs at these ends are cut off, in this order; and the end to which the surface goes on.
+    Limbs(Vec<(usize, Root)>, Option<usize>),
+    /// It falls into these pieces; none where limbs are to be cut off before.
+    Pieces(Vec<Piece>),
 }
 
 /// A limb to be stacked, the piece that divides into it with the line that it begins with, and its name.
@@ -140,94 +153,117 @@ impl Mesh {
         let mut rest: Option<Self> = None;
         let pieces = loop {
             let mesh = rest.as_ref().unwrap_or(self);
-            progress(limbs.len() as u64, (limbs.len() + ends.others.len()) as u64);
-            let (field, tree, ways) = loop {
-                let field = mesh.flow(plan, &mut ends);
-                let tree = mesh.tree(&field, &ends).ok_or(Fault::NoEnds { at: mesh.middle(&ends.start) })?;
-                let ways: Vec<Way> =
-                    ends.others.iter().map(|tip| mesh.way(tip, &ends.start.ring, &field)).collect();
-                match short(&tree, &ends, &ways, row) {
-                    Some(leaf) if plan.poles.is_empty() && ends.others.len() > 1 => {
-                        dropped.push(mesh.middle(&ends.others[leaf]));
-                        ends.others.remove(leaf);
+            let mut flows = Flows::new(mesh, &ends);
+            eprintln!("DBG version n={} strict={strict} ends={}", mesh.points.len(), ends.others.len());
+            // Limbs that are to be cut off stay on the mesh for now.
+            let mut off: Vec<Root> = Vec::new();
+            let pieces = loop {
+                let done = (limbs.len() + off.len()) as u64;
+                progress(done, done + ends.others.len() as u64);
+                match mesh.next(plan, &mut flows, &mut ends, &mut dropped)? {
+                    Next::Start => all[0] = (mesh.middle(&ends.start), false),
+                    Next::End => {}
+                    Next::Limbs(roots, goes_on) => {
+                        let leaves: Vec<usize> = roots.iter().map(|(leaf, _)| *leaf).collect();
+                        for (l, r) in &roots { eprintln!("DBG limb tip {:?} girth {:.1} middle {:.1?} left {} on {:?}", mesh.middle(&ends.others[*l]).round(), r.girth, r.middle.round(), ends.others.len(), goes_on); }
+                        ends.set_off(&leaves, goes_on);
+                        off.extend(roots.into_iter().map(|(_, root)| root));
                     }
-                    _ => break (field, tree, ways),
+                    Next::Pieces(pieces) => break pieces,
                 }
             };
-            let tree = merge_forks(tree, &ways, LEAST_TRUNK * row);
-            let levels = Levels { mesh, field: &field };
-            let divides =
-                |i: usize| Some((i, levels.division(&tree, tree.limbs.get(i)?, &ways, plan.gauge)?));
-            let divisions: BTreeMap<usize, Division> = tree.forks().filter_map(divides).collect();
-            let all_divide = tree.forks().all(|i| divisions.contains_key(&i));
-            let mut last: Vec<usize> = tree.forks().filter(|i| tree.is_last_fork(&tree.limbs[*i])).collect();
-            // What divides is cut up only where it hangs on something that does not.
-            last.sort_by_key(|i| (divisions.contains_key(i), *i));
-            let Some(fork) = last.first().filter(|_| !all_divide).map(|i| &tree.limbs[*i]) else {
+            if off.is_empty() {
                 all.extend(ends.others.iter().map(|tip| (mesh.middle(tip), tip.open)));
-                let mut pieces = Vec::new();
-                mesh.pieces(&tree, &field, &ends, &ways, (plan, &divisions), &mut pieces)?;
                 break pieces;
-            };
-            let (before, girth) = Levels { mesh, field: &field }.course(fork, &ways, false);
-            let leaves: Vec<usize> = fork.children.iter().map(|child| tree.limbs[*child].leaf).collect();
-            let mut roots = mesh.roots(&ends, &leaves, before)?;
-            // A body between limbs that are all thinner ends in its own right, and so it begins.
-            let between = |leaf: usize| ends.others.get(leaf).is_some_and(|tip| tip.between);
-            let middle = |roots: &[(usize, Root)]| {
-                roots.iter().map(|(_, root)| root.middle).sum::<DVec3>() / roots.len().max(1) as f64
-            };
-            let length = ways[fork.leaf].length(fork.low, fork.high);
-            if length > LEAST_BODY * girth
-                && !roots.iter().any(|(leaf, _)| between(*leaf))
-                && roots.iter().all(|(_, root)| root.girth < THINNER * girth)
-                && far_apart(&roots.iter().map(|(_, root)| (root.middle, root.girth)).collect::<Vec<_>>())
-                && ends.add_between(mesh, middle(&roots), false, row).is_some()
-            {
-                continue;
             }
-            let goes_on = roots.pop().map(|(leaf, _)| leaf);
-            let found = plan.start.is_none() && !ends.start.open && !ends.start.between;
-            let on = fork.children.iter().find(|child| Some(tree.limbs[**child].leaf) == goes_on);
-            if let (true, true, Some(on)) = (found, std::ptr::eq(fork, &raw const tree.limbs[tree.root]), on)
-            {
-                let (_, body) = Levels { mesh, field: &field }.course(&tree.limbs[*on], &ways, true);
-                let (own, thin) = Levels { mesh, field: &field }.neck(fork, &ways);
-                let mut places: Vec<(DVec3, f64)> =
-                    roots.iter().map(|(_, root)| (root.middle, root.girth)).collect();
-                places.push((own, thin));
-                let first = places.iter().map(|place| place.0).sum::<DVec3>() / places.len() as f64;
-                if thin < THINNER * body
-                    && far_apart(&places)
-                    && ends.add_between(mesh, first, true, row).is_some()
-                {
-                    all[0] = (mesh.middle(&ends.start), false);
-                    continue;
-                }
-            }
-            let mut gone: Vec<usize> = Vec::new();
-            for (leaf, root) in roots {
-                let mesh = rest.as_ref().unwrap_or(self);
-                let place = leaf - gone.iter().filter(|other| **other < leaf).count();
-                let Some(tip) = ends.others.get(place) else { continue };
-                all.push((mesh.middle(tip), tip.open));
-                // Roots are those of the mesh before the first limb was cut off.
-                let root = if gone.is_empty() { root } else { mesh.root(&ends, place)? };
-                let (smaller, fewer, limb) = mesh.sever(&ends, place, root, plan)?;
-                limbs.push(limb);
-                gone.push(leaf);
-                (rest, ends) = (Some(smaller), fewer);
-            }
+            all.extend(ends.off.iter().map(|tip| (mesh.middle(tip), tip.open)));
+            let (smaller, fewer) = mesh.without(ends, off, plan, &mut limbs)?;
+            (rest, ends) = (Some(smaller), fewer);
         };
         let pieces = grow(pieces, limbs, plan)?;
         Ok(Cut { pieces, ends: all, dropped })
     }
 
+    /// What is to be done with a mesh: some limbs are cut off, or it is stacked as it is.
+    fn next(
+        &self,
+        plan: &Plan,
+        flows: &mut Flows<'_>,
+        ends: &mut Ends,
+        dropped: &mut Vec<DVec3>,
+    ) -> Result<Next, Fault> {
+        let row = plan.gauge.height;
+        let (field, tree, ways) = loop {
+            let field = self.flow(plan, flows, ends);
+            let tree = self.tree(&field, ends).ok_or(Fault::NoEnds { at: self.middle(&ends.start) })?;
+            let ways: Vec<Way> =
+                ends.others.iter().map(|tip| self.way(tip, &ends.start.ring, &field)).collect();
+            match short(&tree, ends, &ways, row) {
+                Some(leaf) if plan.poles.is_empty() && ends.others.len() > 1 => {
+                    dropped.push(self.middle(&ends.others[leaf]));
+                    ends.others.remove(leaf);
+                }
+                _ => break (field, tree, ways),
+            }
+        };
+        let tree = merge_forks(tree, &ways, LEAST_TRUNK * row);
+        let levels = Levels { mesh: self, field: &field };
+        let divides =
+            |i: usize| Some((i, levels.division(&tree, tree.limbs.get(i)?, &ways, plan.gauge)?));
+        let divisions: BTreeMap<usize, Division> = tree.forks().filter_map(divides).collect();
+        let all_divide = tree.forks().all(|i| divisions.contains_key(&i));
+        let mut last: Vec<usize> = tree.forks().filter(|i| tree.is_last_fork(&tree.limbs[*i])).collect();
+        // What divides is cut up only where it hangs on something that does not.
+        last.sort_by_key(|i| (divisions.contains_key(i), *i));
+        let Some(fork) = last.first().filter(|_| !all_divide).map(|i| &tree.limbs[*i]) else {
+            let mut pieces = Vec::new();
+            if ends.off.is_empty() {
+                self.pieces(&tree, &field, ends, &ways, (plan, &divisions), &mut pieces)?;
+            }
+            return Ok(Next::Pieces(pieces));
+        };
+        let (before, girth) = levels.course(fork, &ways, false);
+        let leaves: Vec<usize> = fork.children.iter().map(|child| tree.limbs[*child].leaf).collect();
+        let mut roots = self.roots(flows, ends, &leaves, (before, row))?;
+        // A body between limbs that are all thinner ends in its own right, and so it begins.
+        let between = |leaf: usize| ends.others.get(leaf).is_some_and(|tip| tip.between);
+        let middle = |roots: &[(usize, Root)]| {
+            roots.iter().map(|(_, root)| root.middle).sum::<DVec3>() / roots.len().max(1) as f64
+        };
+        let length = ways[fork.leaf].length(fork.low, fork.high);
+        if length > LEAST_BODY * girth
+            && !roots.iter().any(|(leaf, _)| between(*leaf))
+            && roots.iter().all(|(_, root)| root.girth < THINNER * girth)
+            && far_apart(&roots.iter().map(|(_, root)| (root.middle, root.girth)).collect::<Vec<_>>())
+            && ends.add_between(self, middle(&roots), false, row).is_some()
+        {
+            return Ok(Next::End);
+        }
+        let goes_on = roots.pop().map(|(leaf, _)| leaf);
+        let found = plan.start.is_none() && !ends.start.open && !ends.start.between;
+        let on = fork.children.iter().find(|child| Some(tree.limbs[**child].leaf) == goes_on);
+        if let (true, true, Some(on)) = (found, std::ptr::eq(fork, &raw const tree.limbs[tree.root]), on) {
+            let (_, body) = levels.course(&tree.limbs[*on], &ways, true);
+            let (own, thin) = levels.neck(fork, &ways);
+            let mut places: Vec<(DVec3, f64)> =
+                roots.iter().map(|(_, root)| (root.middle, root.girth)).collect();
+            places.push((own, thin));
+            let first = places.iter().map(|place| place.0).sum::<DVec3>() / places.len() as f64;
+            if thin < THINNER * body
+                && far_apart(&places)
+                && ends.add_between(self, first, true, row).is_some()
+            {
+                return Ok(Next::Start);
+            }
+        }
+        Ok(Next::Limbs(roots, goes_on))
+    }
+
     /// The field, with every closed end at its extremum. The farthest point of a bent limb lies on its inner side, so
     /// the flow is poured a second time around where the first one says that the middle is.
-    fn flow(&self, plan: &Plan, ends: &mut Ends) -> Vec<f64> {
+    fn flow(&self, plan: &Plan, flows: &mut Flows<'_>, ends: &mut Ends) -> Vec<f64> {
         let before = ends.clone();
-        let field = self.field(plan.field, ends);
+        let field = flows.field(plan.field, ends);
         self.climb(&field, ends);
         let far = |a: &Tip, b: &Tip| self.middle(a).distance(self.middle(b)) > 0.5 * plan.gauge.height;
         let moved =
@@ -235,7 +271,7 @@ impl Mesh {
         if !moved {
             return field;
         }
-        let field = self.field(plan.field, ends);
+        let field = flows.field(plan.field, ends);
         self.climb(&field, ends);
         field
     }

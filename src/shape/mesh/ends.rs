@@ -31,11 +31,13 @@ pub(super) struct Tip {
     pub(super) cap: f64,
     /// True for the end of a body between limbs, which is one however short.
     pub(super) between: bool,
+    /// Limbs on the way to it that are to be cut off: indices in [`Ends::off`].
+    pub(super) bears: Vec<usize>,
 }
 
 impl Tip {
     fn new(ring: Vec<u32>, open: bool) -> Self {
-        Self { ring, open, at: 0.0, girth: 0.0, cap: 0.0, between: false }
+        Self { ring, open, at: 0.0, girth: 0.0, cap: 0.0, between: false, bears: Vec::new() }
     }
 
     /// Measures the limb: the area within reach of its end, by the reach.
@@ -59,6 +61,8 @@ impl Tip {
 pub(super) struct Ends {
     pub(super) start: Tip,
     pub(super) others: Vec<Tip>,
+    /// The ends of limbs that are to be cut off: they are on the mesh still, but nothing flows to them.
+    pub(super) off: Vec<Tip>,
     pub(super) distance: Vec<f64>,
     /// Whether fields keep to the maximum principle at the cost of distortion.
     pub(super) strict: bool,
@@ -109,7 +113,7 @@ impl Ends {
                 }
             }
         }
-        let mut ends = Self { start, others, distance, strict: false };
+        let mut ends = Self { start, others, off: Vec::new(), distance, strict: false };
         ends.place();
         let far = ends.others.iter().map(|tip| tip.at).fold(0.0, f64::max);
         ends.start.measure(mesh, NEAR * far, row);
@@ -118,6 +122,37 @@ impl Ends {
             ends.others[i].measure(mesh, height.min(NEAR * far), row);
         }
         ends
+    }
+
+    /// All ends but one of the others, and but those on its way.
+    pub(super) fn beside(&self, which: usize) -> impl Iterator<Item = &Tip> {
+        let mut borne = vec![false; self.off.len()];
+        let mut open: Vec<usize> = self.others.get(which).map(|tip| tip.bears.clone()).unwrap_or_default();
+        while let Some(index) = open.pop() {
+            if let (Some(borne), Some(tip)) = (borne.get_mut(index), self.off.get(index))
+                && !std::mem::replace(borne, true)
+            {
+                open.extend(&tip.bears);
+            }
+        }
+        let rest = self.others.iter().enumerate().filter(move |(i, _)| *i != which).map(|(_, tip)| tip);
+        let off = self.off.iter().zip(borne).filter(|(_, borne)| !borne).map(|(tip, _)| tip);
+        rest.chain([&self.start]).chain(off)
+    }
+
+    /// Sets ends apart whose limbs are to be cut off; they are on the way to the one that goes on.
+    pub(super) fn set_off(&mut self, leaves: &[usize], goes_on: Option<usize>) {
+        for leaf in leaves {
+            if let Some(tip) = self.others.get(*leaf) {
+                self.off.push(tip.clone());
+                let index = self.off.len() - 1;
+                if let Some(bearer) = goes_on.and_then(|leaf| self.others.get_mut(leaf)) {
+                    bearer.bears.push(index);
+                }
+            }
+        }
+        let mut leaf = 0..;
+        self.others.retain(|_| leaf.next().is_none_or(|leaf| !leaves.contains(&leaf)));
     }
 
     fn place(&mut self) {

@@ -1,9 +1,16 @@
 //! The field over a mesh whose level lines become rows.
+//!
+//! A flow enters the surface at one end and leaves it at others; its potential rises along it. All fields here are made of
+//! one potential for each end, that of a unit flow from the end to one fixed vertex: the Laplacian is factored once, an end
+//! costs one solution, and every field is a combination of them.
 
 use super::Mesh;
 use super::ends::{Ends, Tip};
+use super::factor::Factor;
+use super::patch::eliminate;
 use super::solver::{Matrix, Solver};
 use super::soup::NONE;
+use std::collections::BTreeMap;
 
 /// Where the rows of a mesh come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -17,6 +24,8 @@ pub enum Field {
 }
 
 const TOLERANCE: f64 = 1e-7;
+/// Systems of more unknowns are solved step by step: their factor would not fit.
+const MOST_FACTORED: usize = 150_000;
 /// Cotangents of slivers are cut to this.
 const FLATTEST: f64 = 1e3;
 /// Weights are positive where obtuse triangles would make an extremum that is no end.
@@ -24,9 +33,94 @@ const LEAST_WEIGHT: f64 = 1e-4;
 /// Rounds of that, after which all weights are.
 const MENDS: u32 = 3;
 
-impl Mesh {
-    /// The value of every vertex: least at the start, greatest at the other ends.
-    pub(super) fn field(&self, field: Field, ends: &Ends) -> Vec<f64> {
+/// The potentials of flows over one mesh.
+pub(super) struct Flows<'m> {
+    mesh: &'m Mesh,
+    /// For each vertex its group: the ground, whose potential is 0, the openings, and each other vertex by itself.
+    slot: Vec<u32>,
+    groups: Groups,
+    weights: Vec<f64>,
+    system: System,
+    /// Whether fields keep to the maximum principle at the cost of distortion, and how often weights were mended for it.
+    strict: bool,
+    mended: u32,
+    /// By first vertex and bits of the radius of the cap.
+    sources: BTreeMap<(u32, u64), Source>,
+}
+
+/// Vertices with one potential: rings, the first of which is the ground, and then single ones.
+struct Groups {
+    rings: Vec<Vec<u32>>,
+    singles: Vec<u32>,
+}
+
+impl Groups {
+    fn get(&self, group: usize) -> &[u32] {
+        let single = group.wrapping_sub(self.rings.len());
+        self.rings.get(group).map_or_else(|| &self.singles[single..=single], Vec::as_slice)
+    }
+
+    fn count(&self) -> usize {
+        self.rings.len() + self.singles.len()
+    }
+}
+
+enum System {
+    Factored(Factor),
+    Iterative(Box<Solver>),
+}
+
+impl System {
+    fn solve(&mut self, right: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Factored(factor) => factor.solve(right),
+            Self::Iterative(solver) => {
+                let mut x = vec![0.0; right.len()];
+                solver.solve(right, &mut x, TOLERANCE);
+                x
+            }
+        }
+    }
+}
+
+/// An end as the source of a unit flow.
+struct Source {
+    /// Where the flow enters, and its share there.
+    cap: Vec<(u32, f64)>,
+    /// The potential at each vertex when it leaves through the ground.
+    potential: Vec<f64>,
+}
+
+impl Source {
+    /// The mean of a potential where this flow enters.
+    fn mean(&self, potential: &[f64]) -> f64 {
+        self.cap.iter().map(|(vertex, share)| share * potential[*vertex as usize]).sum()
+    }
+}
+
+impl<'m> Flows<'m> {
+    /// Prepares for flows between the ends: some may move or be added, but openings stay what they are.
+    pub(super) fn new(mesh: &'m Mesh, ends: &Ends) -> Self {
+        let mut slot = vec![NONE; mesh.points.len()];
+        let mut groups = Groups { rings: vec![ends.start.ring.clone()], singles: Vec::new() };
+        groups.rings.extend(ends.others.iter().filter(|tip| tip.open).map(|tip| tip.ring.clone()));
+        for (group, ring) in (0..).zip(&groups.rings) {
+            ring.iter().for_each(|v| slot[*v as usize] = group);
+        }
+        for vertex in 0..mesh.points.len() as u32 {
+            if slot[vertex as usize] == NONE {
+                slot[vertex as usize] = groups.count() as u32;
+                groups.singles.push(vertex);
+            }
+        }
+        let weights = mesh.weights();
+        let system = system(mesh, &groups, &slot, &weights);
+        let (strict, sources) = (ends.strict, BTreeMap::new());
+        Self { mesh, slot, groups, weights, system, strict, mended: 0, sources }
+    }
+
+    /// The value of every vertex: least at the start, where it is 0, greatest at the other ends.
+    pub(super) fn field(&mut self, field: Field, ends: &Ends) -> Vec<f64> {
         match field {
             Field::Geodesic => ends.distance.clone(),
             Field::Harmonic => self.harmonic(ends),
@@ -36,165 +130,203 @@ impl Mesh {
     /// The field of a flow that enters at the start and leaves at the other ends, through each as much as fits its girth:
     /// so it rises by about 1 a unit of length on every limb, and each tip is a maximum. At closed ends the flow is spread
     /// evenly over a cap, around whose middle the level lines are rings; on an open edge the field has one value.
-    fn harmonic(&self, ends: &Ends) -> Vec<f64> {
-        let rings: Vec<&[u32]> = ends.others.iter().filter(|tip| tip.open).map(|tip| &tip.ring[..]).collect();
-        let mut source = vec![0.0; self.points.len()];
-        let mut total = 0.0;
-        for tip in &ends.others {
-            total += tip.girth;
-            self.pour(tip, tip.girth, &mut source);
-        }
-        if !ends.start.open {
-            self.pour(&ends.start, -total, &mut source);
-        }
-        self.potential(&ends.start.ring, &rings, &source, ends.strict, |v| ends.distance[v as usize])
+    fn harmonic(&mut self, ends: &Ends) -> Vec<f64> {
+        let total: f64 = ends.others.iter().map(|tip| tip.girth).sum();
+        let flows = |_: &mut Self| {
+            let others = ends.others.iter().map(|tip| (key(tip), tip.girth));
+            others.chain([(key(&ends.start), -total)]).collect()
+        };
+        let mut field = self.mended(ends, flows);
+        let start = ends.start.ring.first().map_or(0.0, |v| field[*v as usize]);
+        field.iter_mut().for_each(|value| *value -= start);
+        field
     }
 
     /// The field of a flow that leaves at one end and enters at all others alike: around the limb that goes to that end the
-    /// level lines are rings, and where it leaves the object they spread out evenly. Also the vertices at which it is 0.
-    pub(super) fn lone(&self, ends: &Ends, which: usize) -> (Vec<f64>, Vec<u32>) {
+    /// level lines are rings, and where it leaves the object they spread out evenly. Also the vertices at which it is
+    /// about 0.
+    pub(super) fn lone(&mut self, ends: &Ends, which: usize) -> (Vec<f64>, Vec<u32>) {
+        let field = self.mended(ends, |flows| flows.alike(ends, which));
+        let rest: Vec<&Tip> = ends.beside(which).collect();
+        let level: f64 = rest.iter().filter_map(|tip| self.sources.get(&key(tip))).map(|it| it.mean(&field)).sum();
+        let level = level / rest.len().max(1) as f64;
         let mut ground = Vec::new();
-        let rest = ends.others.iter().enumerate().filter(|(i, _)| *i != which).map(|(_, tip)| tip);
-        for tip in rest.chain([&ends.start]) {
-            if tip.open {
-                ground.extend(&tip.ring);
-            } else {
-                let near = self.distances(&tip.ring, tip.cap);
-                ground.extend((0..near.len() as u32).filter(|v| near[*v as usize] <= tip.cap));
-            }
+        for source in rest.iter().filter_map(|tip| self.sources.get(&key(tip))) {
+            ground.extend(source.cap.iter().map(|(vertex, _)| *vertex));
         }
+        ground.extend(rest.iter().flat_map(|tip| &tip.ring));
         ground.sort_unstable();
         ground.dedup();
-        let mut source = vec![0.0; self.points.len()];
-        let tip = &ends.others[which];
-        self.pour(tip, tip.girth, &mut source);
-        let rings = if tip.open { vec![&tip.ring[..]] } else { Vec::new() };
-        let field = self.potential(&ground, &rings, &source, ends.strict, |_| 0.0);
-        (field, ground)
+        (field.into_iter().map(|value| value - level).collect(), ground)
     }
 
-    /// The potential of a flow out of `source` that is 0 on `ground` and has one value on each of the rings.
-    fn potential(
-        &self,
-        ground: &[u32],
-        rings: &[&[u32]],
-        source: &[f64],
-        strict: bool,
-        guess: impl Fn(u32) -> f64,
-    ) -> Vec<f64> {
-        let count = self.points.len();
-        let mut slot = vec![NONE; count];
-        let mut groups: Vec<Vec<u32>> = Vec::new();
-        let mut join = |ring: &[u32], slot: &mut Vec<u32>| {
-            for vertex in ring {
-                slot[*vertex as usize] = groups.len() as u32;
-            }
-            groups.push(ring.to_vec());
+    /// How much flows through each end when it leaves at one and all others have the same potential.
+    fn alike(&self, ends: &Ends, which: usize) -> Vec<((u32, u64), f64)> {
+        let rest: Vec<(u32, u64)> = ends.beside(which).map(key).collect();
+        let own = key(&ends.others[which]);
+        let flow = ends.others[which].girth;
+        // Unknown are the flows and the common potential; no more flows out than in.
+        let size = rest.len() + 1;
+        let width = size + 1;
+        let mut table = vec![0.0; size * width];
+        let mean = |of: (u32, u64), by: (u32, u64)| {
+            self.sources.get(&of).zip(self.sources.get(&by)).map_or(0.0, |(of, by)| of.mean(&by.potential))
         };
-        // The ground is group 0.
-        join(ground, &mut slot);
-        for ring in rings {
-            join(ring, &mut slot);
+        for (i, of) in rest.iter().enumerate() {
+            for (j, by) in rest.iter().enumerate() {
+                table[i * width + j] = mean(*of, *by);
+            }
+            table[i * width + size - 1] = -1.0;
+            table[i * width + size] = -flow * mean(*of, own);
+            table[(size - 1) * width + i] = 1.0;
         }
-        for vertex in 0..count as u32 {
-            if slot[vertex as usize] == NONE {
-                join(&[vertex], &mut slot);
-            }
-        }
-        let mut weights = self.weights();
-        let mut x: Vec<f64> = groups.iter().skip(1).map(|group| guess(group[0])).collect();
-        for round in if strict { MENDS } else { 0 }.. {
-            if round == MENDS {
-                for weight in &mut weights {
-                    *weight = weight.max(LEAST_WEIGHT);
-                }
-            }
-            let matrix = self.laplacian(&groups, &slot, &weights);
-            let right: Vec<f64> =
-                groups.iter().skip(1).map(|group| group.iter().map(|v| source[*v as usize]).sum()).collect();
-            Solver::new(matrix).solve(&right, &mut x, TOLERANCE);
-            let value = |v: u32| {
-                slot[v as usize].checked_sub(1).and_then(|i| x.get(i as usize)).copied().unwrap_or(0.0)
-            };
-            let free = |v: &u32| {
-                let slot = slot[*v as usize] as usize;
-                slot > 0 && source[*v as usize] == 0.0 && groups[slot].len() == 1
-            };
-            let wrong: Vec<u32> = (0..count as u32)
-                .filter(free)
-                .filter(|v| {
-                    let (mut above, mut below) = (false, false);
-                    for other in self.neighbors(*v) {
-                        above |= value(other) > value(*v);
-                        below |= value(other) < value(*v);
-                    }
-                    !(above && below)
-                })
-                .collect();
-            if wrong.is_empty() || round >= MENDS {
-                break;
-            }
-            for h in wrong.iter().flat_map(|v| self.corners(*v)).flat_map(|h| [*h, Self::before(*h)]) {
-                let twin = self.twins[h as usize];
-                let least = weights[h as usize].max(LEAST_WEIGHT);
-                weights[h as usize] = least;
-                if twin != NONE {
-                    weights[twin as usize] = least;
-                }
-            }
-        }
-        let value = |slot: u32| slot.checked_sub(1).and_then(|i| x.get(i as usize)).copied().unwrap_or(0.0);
-        slot.into_iter().map(value).collect()
+        table[size * width - 1] = -flow;
+        let even = -flow / rest.len().max(1) as f64;
+        let flows = eliminate(table, size).unwrap_or_else(|| vec![even; size]);
+        rest.into_iter().zip(flows).chain([(own, flow)]).collect()
     }
 
-    /// The Laplacian of the groups but the first, whose value is 0.
-    fn laplacian(&self, groups: &[Vec<u32>], slot: &[u32], weights: &[f64]) -> Matrix {
-        let mut matrix = Matrix { starts: vec![0], ..Matrix::default() };
-        for (row, group) in groups.iter().enumerate().skip(1) {
-            let mut diagonal = 0.0;
-            let mut add = |other: u32, weight: f64| {
-                let column = slot[other as usize];
-                if column as usize == row {
-                    return;
-                }
-                diagonal += weight;
-                if column > 0 {
-                    matrix.columns.push(column - 1);
-                    matrix.values.push(-weight);
-                }
-            };
-            for &vertex in group {
-                for &h in self.corners(vertex) {
-                    add(self.to(h), weights[h as usize]);
-                    // An open edge is seen from one of its ends only.
-                    let back = Self::before(h);
-                    if self.twins[back as usize] == NONE {
-                        add(self.from(back), weights[back as usize]);
+    /// A combination of the potentials of all ends; where fields are strict, one without extrema between ends.
+    fn mended(&mut self, ends: &Ends, flows: impl Fn(&mut Self) -> Vec<((u32, u64), f64)>) -> Vec<f64> {
+        loop {
+            for tip in ends.others.iter().chain(&ends.off).chain([&ends.start]) {
+                self.prepare(tip);
+            }
+            let mut field = vec![0.0; self.slot.len()];
+            for (key, flow) in flows(self) {
+                if let Some(source) = self.sources.get(&key) {
+                    for (value, potential) in field.iter_mut().zip(&source.potential) {
+                        *value += flow * potential;
                     }
                 }
             }
-            matrix.diagonal.push(diagonal);
-            matrix.starts.push(matrix.columns.len() as u32);
+            if !self.strict || self.mended > MENDS || !self.mend(&field) {
+                return field;
+            }
         }
-        matrix
     }
 
-    /// Spreads a flow over an end.
-    fn pour(&self, tip: &Tip, flow: f64, source: &mut [f64]) {
-        let Some(&first) = tip.ring.first().filter(|_| !tip.open) else {
-            if let Some(&first) = tip.ring.first() {
-                source[first as usize] += flow;
-            }
+    /// Solves for the flow out of an end, unless that is done.
+    fn prepare(&mut self, tip: &Tip) {
+        if self.sources.contains_key(&key(tip)) {
             return;
+        }
+        let cap = self.mesh.cap(tip);
+        let mut right = vec![0.0; self.groups.count() - 1];
+        for (vertex, share) in &cap {
+            if let Some(unknown) = self.slot[*vertex as usize].checked_sub(1) {
+                right[unknown as usize] += share;
+            }
+        }
+        let x = self.system.solve(&right);
+        let value = |slot: &u32| slot.checked_sub(1).map_or(0.0, |unknown| x[unknown as usize]);
+        let potential = self.slot.iter().map(value).collect();
+        self.sources.insert(key(tip), Source { cap, potential });
+    }
+
+    /// Makes weights positive around extrema of a field that are no ends; false when there are none.
+    fn mend(&mut self, field: &[f64]) -> bool {
+        let mesh = self.mesh;
+        let value = |v: u32| field[v as usize];
+        let mut free: Vec<bool> =
+            self.slot.iter().map(|slot| *slot as usize >= self.groups.rings.len()).collect();
+        for (vertex, _) in self.sources.values().flat_map(|source| &source.cap) {
+            free[*vertex as usize] = false;
+        }
+        let wrong = |v: &u32| {
+            let (mut above, mut below) = (false, false);
+            for other in mesh.neighbors(*v) {
+                above |= value(other) > value(*v);
+                below |= value(other) < value(*v);
+            }
+            !(above && below)
         };
+        let wrong: Vec<u32> =
+            (0..free.len() as u32).filter(|v| free[*v as usize]).filter(wrong).collect();
+        if wrong.is_empty() {
+            return false;
+        }
+        self.mended += 1;
+        if self.mended > MENDS {
+            self.weights.iter_mut().for_each(|weight| *weight = weight.max(LEAST_WEIGHT));
+        }
+        for h in wrong.iter().flat_map(|v| mesh.corners(*v)).flat_map(|h| [*h, Mesh::before(*h)]) {
+            let twin = mesh.twins[h as usize];
+            let least = self.weights[h as usize].max(LEAST_WEIGHT);
+            self.weights[h as usize] = least;
+            if twin != NONE {
+                self.weights[twin as usize] = least;
+            }
+        }
+        self.system = system(mesh, &self.groups, &self.slot, &self.weights);
+        self.sources.clear();
+        true
+    }
+}
+
+fn key(tip: &Tip) -> (u32, u64) {
+    (tip.ring.first().copied().unwrap_or(0), tip.cap.to_bits())
+}
+
+/// The Laplacian of all groups but the ground, ready to be solved.
+fn system(mesh: &Mesh, groups: &Groups, slot: &[u32], weights: &[f64]) -> System {
+    let matrix = laplacian(mesh, groups, slot, weights);
+    let unknowns = matrix.diagonal.len();
+    if unknowns <= MOST_FACTORED {
+        let places: Vec<_> = (1..=unknowns).map(|group| mesh.point(groups.get(group)[0])).collect();
+        let rings: Vec<u32> = (0..groups.rings.len() as u32 - 1).collect();
+        if let Some(factor) = Factor::new(&matrix, &places, &rings) {
+            return System::Factored(factor);
+        }
+    }
+    System::Iterative(Box::new(Solver::new(matrix)))
+}
+
+fn laplacian(mesh: &Mesh, groups: &Groups, slot: &[u32], weights: &[f64]) -> Matrix {
+    let mut matrix = Matrix { starts: vec![0], ..Matrix::default() };
+    for row in 1..groups.count() {
+        let mut diagonal = 0.0;
+        let mut add = |other: u32, weight: f64| {
+            let column = slot[other as usize];
+            if column as usize == row {
+                return;
+            }
+            diagonal += weight;
+            if column > 0 {
+                matrix.columns.push(column - 1);
+                matrix.values.push(-weight);
+            }
+        };
+        for &vertex in groups.get(row) {
+            for &h in mesh.corners(vertex) {
+                add(mesh.to(h), weights[h as usize]);
+                // An open edge is seen from one of its ends only.
+                let back = Mesh::before(h);
+                if mesh.twins[back as usize] == NONE {
+                    add(mesh.from(back), weights[back as usize]);
+                }
+            }
+        }
+        matrix.diagonal.push(diagonal);
+        matrix.starts.push(matrix.columns.len() as u32);
+    }
+    matrix
+}
+
+impl Mesh {
+    /// Where a unit flow enters at an end: all over the cap of a closed one.
+    fn cap(&self, tip: &Tip) -> Vec<(u32, f64)> {
+        let Some(&first) = tip.ring.first() else { return Vec::new() };
+        if tip.open {
+            return vec![(first, 1.0)];
+        }
         let near = self.distances(&[first], tip.cap);
         let share = |v: u32| self.corners(v).iter().map(|h| self.normal(h / 3).length()).sum::<f64>();
-        let cap: Vec<(u32, f64)> =
+        let mut cap: Vec<(u32, f64)> =
             (0..near.len() as u32).filter(|v| near[*v as usize] <= tip.cap).map(|v| (v, share(v))).collect();
         let whole: f64 = cap.iter().map(|(_, share)| share).sum();
-        for (vertex, share) in cap {
-            source[vertex as usize] += flow * share / whole.max(f64::MIN_POSITIVE);
-        }
+        cap.iter_mut().for_each(|(_, share)| *share /= whole.max(f64::MIN_POSITIVE));
+        cap
     }
 
     /// For every half-edge half the sum of the cotangents across it.

@@ -2,6 +2,7 @@
 
 use super::cut::Plan;
 use super::ends::{Ends, Tip};
+use super::field::Flows;
 use super::levels::Levels;
 use super::patch::Patch;
 use super::soup::{NONE, Soup, meeting};
@@ -38,6 +39,8 @@ pub(super) struct Limb {
 pub(super) struct Root {
     field: Vec<f64>,
     way: Way,
+    /// The level of its end.
+    high: f64,
     /// The level along which it is cut off, and the one at which it begins.
     levels: [f64; 2],
     /// The middle of the line at which it begins.
@@ -48,17 +51,27 @@ pub(super) struct Root {
     direction: DVec3,
 }
 
+/// What is left when a limb is cut off.
+struct Severed {
+    /// The object without it, and its ends.
+    mesh: Mesh,
+    ends: Ends,
+    /// For each vertex before its number now.
+    place: Vec<u32>,
+}
+
 impl Mesh {
     /// The limbs at a fork by the ends that they go to, those that turn most against the direction before first.
     pub(super) fn roots(
         &self,
+        flows: &mut Flows<'_>,
         ends: &Ends,
         leaves: &[usize],
-        before: DVec3,
+        (before, row): (DVec3, f64),
     ) -> Result<Vec<(usize, Root)>, Fault> {
         let mut roots = Vec::with_capacity(leaves.len());
         for &leaf in leaves {
-            let root = self.root(ends, leaf)?;
+            let root = self.root(flows, ends, leaf, row)?;
             let turn = atan2(before.cross(root.direction).length(), before.dot(root.direction));
             // A body goes on to its own end, if it has one.
             let turn = if ends.others[leaf].between { -1.0 } else { turn };
@@ -70,9 +83,15 @@ impl Mesh {
 
     /// Finds where the limb begins that goes to one of the ends: downward from its tip its level lines keep their length,
     /// and then they spread out over what it grows from.
-    pub(super) fn root(&self, ends: &Ends, which: usize) -> Result<Root, Fault> {
+    fn root(
+        &self,
+        flows: &mut Flows<'_>,
+        ends: &Ends,
+        which: usize,
+        row: f64,
+    ) -> Result<Root, Fault> {
         let tip = &ends.others[which];
-        let (field, ground) = self.lone(ends, which);
+        let (field, ground) = flows.lone(ends, which);
         let way = self.way(tip, &ground, &field);
         let saddle = self.saddle(&field, ends, which);
         let lines = Levels { mesh: self, field: &field };
@@ -102,39 +121,87 @@ impl Mesh {
         let end = center(begin + up).unwrap_or_else(|| self.middle(tip));
         let direction = (end - middle).normalize_or_zero();
         let levels = [at(low), at(begin)];
-        Ok(Root { field, way, levels, middle, girth, direction })
+        let high = if tip.open {
+            tip.ring.iter().map(|v| field[*v as usize]).fold(f64::MAX, f64::min)
+        } else {
+            way.level(&|v| field[v as usize], super::cut::FIRST_RING * row, true)
+        };
+        Ok(Root { field, way, high, levels, middle, girth, direction })
     }
 
-    /// Cuts off the limb that goes to one of the ends. Returns the object without it, its ends, and the limb.
-    pub(super) fn sever(
+    /// Cuts limbs off one after the other. Returns what is left, and its ends.
+    pub(super) fn without(
+        &self,
+        ends: Ends,
+        roots: Vec<Root>,
+        plan: &Plan,
+        limbs: &mut Vec<Limb>,
+    ) -> Result<(Self, Ends), Fault> {
+        // The ends of limbs stand behind the others, in the order in which they go.
+        let which = ends.others.len();
+        let mut ends = ends;
+        let off = std::mem::take(&mut ends.off);
+        ends.others.iter_mut().for_each(|tip| tip.bears.clear());
+        ends.others.extend(off.iter().map(|tip| Tip { bears: Vec::new(), ..tip.clone() }));
+        let mut now: Option<(Self, Vec<u32>)> = None;
+        for (tip, root) in off.into_iter().zip(roots) {
+            let (severed, limb) = match &now {
+                None => self.sever(&ends, which, &root, (self, &tip, &root), plan)?,
+                Some((mesh, place)) => match self.still(&tip, &root, place, mesh.points.len()) {
+                    Some(still) => mesh.sever(&ends, which, &still, (self, &tip, &root), plan)?,
+                    // It bore other limbs, or one has been too near.
+                    None => {
+ eprintln!("DBG fresh root");
+                        let root = mesh.root(&mut Flows::new(mesh, &ends), &ends, which, plan.gauge.height)?;
+                        let tip = ends.others[which].clone();
+                        mesh.sever(&ends, which, &root, (mesh, &tip, &root), plan)?
+                    }
+                },
+            };
+            limbs.push(limb);
+            let mut place = severed.place;
+            if let Some((_, before)) = now {
+                let moved = |v: &u32| place.get(*v as usize).copied().unwrap_or(NONE);
+                place = before.iter().map(moved).collect();
+            }
+            ends = severed.ends;
+            now = Some((severed.mesh, place));
+        }
+        let (mesh, _) = now.ok_or(Fault::Fork { at: self.middle(&ends.start) })?;
+        ends.distance = mesh.distances(&ends.start.ring, f64::INFINITY);
+        Ok((mesh, ends))
+    }
+
+    /// The level lines of a limb above the level along which it is cut off.
+    fn limb(&self, tip: &Tip, root: &Root, level: f64, plan: &Plan) -> Limb {
+        let levels = Levels { mesh: self, field: &root.field };
+        let spacing = plan.gauge.height.max(0.4 * self.mean_edge());
+        let (last, pole) =
+            if tip.open { (self.opening(&tip.ring, true), None) } else { (None, Some(self.middle(tip))) };
+        let rings = levels.stack([level, root.high], &root.way.vertices, spacing, None, last.as_ref());
+        Limb { rings, pole }
+    }
+
+    /// Cuts off the limb that goes to one of the ends; its level lines are those of a mesh on which it is whole.
+    fn sever(
         &self,
         ends: &Ends,
         which: usize,
-        root: Root,
+        root: &Root,
+        whole: (&Self, &Tip, &Root),
         plan: &Plan,
-    ) -> Result<(Self, Ends, Limb), Fault> {
-        let row = plan.gauge.height;
+    ) -> Result<(Severed, Limb), Fault> {
         let tip = &ends.others[which];
         let fault = || Fault::Fork { at: self.middle(tip) };
-        let Root { field, way, levels: [wide, narrow], middle, girth, .. } = root;
-        let levels = Levels { mesh: self, field: &field };
-        let spacing = row.max(0.4 * self.mean_edge());
-        let (last, pole, high) = if tip.open {
-            let high = tip.ring.iter().map(|v| field[*v as usize]).fold(f64::MAX, f64::min);
-            (self.opening(&tip.ring, true), None, high)
-        } else {
-            let high = way.level(&|v| field[v as usize], super::cut::FIRST_RING * row, true);
-            (None, Some(self.middle(tip)), high)
-        };
+        let [wide, narrow] = root.levels;
         // The place is cut out as widely as its surroundings allow.
         let tries = (0..=TRIES).map(|k| wide + (narrow - wide) * f64::from(k) / f64::from(TRIES));
-        let cut = tries.filter(|level| *level < high).find_map(|level| {
-            let (kept, edge) = self.rest(self.reached(&field, level, tip), ends, which)?;
+        let cut = tries.filter(|level| *level < root.high).find_map(|level| {
+            let (kept, edge) = self.rest(self.reached(&root.field, level, tip), ends, which)?;
             Some((level, kept, edge))
         });
         let (level, kept, edge) = cut.ok_or_else(fault)?;
-        let rings = levels.stack([level, high], &way.vertices, spacing, None, last.as_ref());
-        let (mesh, place) = self.closed(&kept, &edge, middle, girth);
+        let (mesh, place) = self.closed(&kept, &edge, root.middle, root.girth);
         let new = |tip: &Tip| {
             let ring = tip.ring.iter().map(|v| place[*v as usize]).filter(|v| *v != NONE).collect();
             Tip { ring, ..tip.clone() }
@@ -145,8 +212,25 @@ impl Mesh {
         if others.iter().chain([&start]).any(|tip| tip.ring.is_empty()) {
             return Err(fault());
         }
-        let distance = mesh.distances(&start.ring, f64::INFINITY);
-        Ok((mesh, Ends { start, others, distance, strict: ends.strict }, Limb { rings, pole }))
+        let ends = Ends { start, others, off: Vec::new(), distance: Vec::new(), strict: ends.strict };
+        let (on, tip, root) = whole;
+        Ok((Severed { mesh, ends, place }, on.limb(tip, root, level, plan)))
+    }
+
+    /// A root on what is left of the mesh; `None` where something of the limb is gone.
+    fn still(&self, tip: &Tip, root: &Root, place: &[u32], count: usize) -> Option<Root> {
+        let whole = |level: f64| {
+            let inside = self.reached(&root.field, level, tip);
+            inside.iter().zip(place).all(|(inside, place)| !*inside || *place != NONE)
+        };
+        let [wide, narrow] = root.levels;
+        let wide = (0..=TRIES).map(|k| wide + (narrow - wide) * f64::from(k) / f64::from(TRIES)).find(|it| whole(*it))?;
+        // What is new lies low.
+        let mut field = vec![f64::MIN; count];
+        for (value, place) in root.field.iter().zip(place).filter(|(_, place)| **place != NONE) {
+            field[*place as usize] = *value;
+        }
+        Some(Root { field, way: root.way.clone(), levels: [wide, narrow], ..*root })
     }
 
     /// The level above which what lies around the limb does not reach around what it grows from: below it the rest of the
@@ -157,8 +241,7 @@ impl Mesh {
         order.sort_unstable_by(|a, b| field[*a as usize].total_cmp(&field[*b as usize]).then(a.cmp(b)));
         let mut leader = vec![NONE; count];
         let mut end = vec![NONE; count];
-        let rest = ends.others.iter().enumerate().filter(|(i, _)| *i != which).map(|(_, tip)| tip);
-        for (i, tip) in (0..).zip(rest.chain([&ends.start])) {
+        for (i, tip) in (0..).zip(ends.beside(which)) {
             tip.ring.iter().for_each(|v| end[*v as usize] = i);
         }
         let mut last = 0.0;

@@ -4,6 +4,7 @@ mod coarse;
 mod cut;
 mod divide;
 mod ends;
+mod factor;
 mod field;
 mod gate;
 mod geodesic;

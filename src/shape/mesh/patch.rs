@@ -123,7 +123,7 @@ fn spread(all: &[(DVec3, DVec3)]) -> Vec<(DVec3, DVec3)> {
 }
 
 /// Solves a dense system by elimination with row exchange; the right side is the last column.
-fn eliminate(mut system: Vec<f64>, size: usize) -> Option<Vec<f64>> {
+pub(super) fn eliminate(mut system: Vec<f64>, size: usize) -> Option<Vec<f64>> {
     let width = size + 1;
     for column in 0..size {
         let pivot = (column..size).max_by(|a, b| {

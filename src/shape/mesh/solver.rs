@@ -23,7 +23,7 @@ impl Matrix {
         self.diagonal.len()
     }
 
-    fn row(&self, i: usize) -> impl DoubleEndedIterator<Item = (usize, f64)> {
+    pub(super) fn row(&self, i: usize) -> impl DoubleEndedIterator<Item = (usize, f64)> {
         let range = self.starts[i] as usize..self.starts[i + 1] as usize;
         self.columns[range.clone()].iter().map(|j| *j as usize).zip(self.values[range].iter().copied())
     }
