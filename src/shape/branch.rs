@@ -138,7 +138,11 @@ impl<S: ParametricSurface> Branch<S> {
                 let share = (reach - foot.distance) / (far.1 - foot.distance).max(1e-12);
                 let middle = near + (far.0 - near) * share.clamp(0.05, 0.95);
                 let next = next_to(middle, &foot);
-                if next.distance > reach { far = (middle, next.distance) } else { (near, foot) = (middle, next) }
+                if next.distance > reach {
+                    far = (middle, next.distance);
+                } else {
+                    (near, foot) = (middle, next);
+                }
             }
             places.push(near);
             feet.push(foot);

@@ -128,10 +128,9 @@ impl Ring {
             }
         }
         let mut phase = best.1 as f64 / count as f64;
-        let mut samples = rough;
+        let mut samples = if best.1 == 0 { rough } else { self.samples(count, phase) };
         // Newton steps: the derivative of a sample by the phase is the tangent there.
         for _ in 0..3 {
-            samples = self.samples(count, phase);
             let (mut slope, mut bend) = (0.0, 0.0);
             for i in 0..count {
                 let tangent =
@@ -141,7 +140,7 @@ impl Ring {
             }
             let step = if bend > 0.0 { slope / bend } else { 0.0 };
             // Equal rings differ by rounding only: they stay as they are.
-            if step.abs() < 1e-9 {
+            if step.abs() < 1e-8 {
                 break;
             }
             phase -= step.clamp(-0.5 / count as f64, 0.5 / count as f64);

@@ -257,7 +257,9 @@ impl Stack {
             let column = if j + turn < count { j + turn } else { j + turn - count };
             let first = row * (count + BESIDE) + column;
             let (mut point, mut dv) = (DVec3::ZERO, DVec3::ZERO);
-            for (sample, (along, slope)) in self.samples[first..first + 4].iter().zip(along.iter().zip(&slope)) {
+            for (sample, (along, slope)) in
+                self.samples[first..first + 4].iter().zip(along.iter().zip(&slope))
+            {
                 point += *sample * *along;
                 dv += *sample * *slope;
             }

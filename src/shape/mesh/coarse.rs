@@ -99,13 +99,13 @@ impl Work {
 
     /// Whether a vertex may move to its neighbor: the surface stays one sheet, no face turns over or becomes a sliver.
     fn may(&self, v: u32, u: u32, ring: &[u32], longest: f64) -> bool {
+        let at = self.points[u as usize];
+        if ring.iter().any(|w| self.points[*w as usize].distance_squared(at) > longest * longest) {
+            return false;
+        }
         let other = self.ring(u);
         let common = ring.iter().filter(|w| other.contains(w)).count();
-        let at = self.points[u as usize];
-        if common != 2
-            || ring.len() + other.len() - common - 2 > MOST_EDGES
-            || ring.iter().any(|w| self.points[*w as usize].distance_squared(at) > longest * longest)
-        {
+        if common != 2 || ring.len() + other.len() - common - 2 > MOST_EDGES {
             return false;
         }
         self.around[v as usize].iter().map(|f| self.faces[*f as usize]).filter(|face| !face.contains(&u)).all(

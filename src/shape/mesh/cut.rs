@@ -154,7 +154,6 @@ impl Mesh {
         let pieces = loop {
             let mesh = rest.as_ref().unwrap_or(self);
             let mut flows = Flows::new(mesh, &ends);
-            eprintln!("DBG version n={} strict={strict} ends={}", mesh.points.len(), ends.others.len());
             // Limbs that are to be cut off stay on the mesh for now.
             let mut off: Vec<Root> = Vec::new();
             let pieces = loop {
@@ -165,7 +164,6 @@ impl Mesh {
                     Next::End => {}
                     Next::Limbs(roots, goes_on) => {
                         let leaves: Vec<usize> = roots.iter().map(|(leaf, _)| *leaf).collect();
-                        for (l, r) in &roots { eprintln!("DBG limb tip {:?} girth {:.1} middle {:.1?} left {} on {:?}", mesh.middle(&ends.others[*l]).round(), r.girth, r.middle.round(), ends.others.len(), goes_on); }
                         ends.set_off(&leaves, goes_on);
                         off.extend(roots.into_iter().map(|(_, root)| root));
                     }
@@ -208,8 +206,7 @@ impl Mesh {
         };
         let tree = merge_forks(tree, &ways, LEAST_TRUNK * row);
         let levels = Levels { mesh: self, field: &field };
-        let divides =
-            |i: usize| Some((i, levels.division(&tree, tree.limbs.get(i)?, &ways, plan.gauge)?));
+        let divides = |i: usize| Some((i, levels.division(&tree, tree.limbs.get(i)?, &ways, plan.gauge)?));
         let divisions: BTreeMap<usize, Division> = tree.forks().filter_map(divides).collect();
         let all_divide = tree.forks().all(|i| divisions.contains_key(&i));
         let mut last: Vec<usize> = tree.forks().filter(|i| tree.is_last_fork(&tree.limbs[*i])).collect();

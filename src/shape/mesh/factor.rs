@@ -249,3 +249,84 @@ fn dissect(matrix: &Matrix, places: &[DVec3], last: &[u32]) -> Vec<u32> {
     order.extend(last);
     order
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The Laplacian of a grid with diagonals, grounded at its first node; the last unknown is tied to many others.
+    fn grid(side: u32) -> (Matrix, Vec<DVec3>) {
+        let count = side * side;
+        let mut edges: Vec<(u32, u32, f64)> = Vec::new();
+        for k in 0..count {
+            let (x, y) = (k % side, k / side);
+            let weight = 0.3 + f64::from(k * 7 % 11);
+            if x + 1 < side {
+                edges.push((k, k + 1, weight));
+            }
+            if y + 1 < side {
+                edges.push((k, k + side, 1.0));
+            }
+            if x + 1 < side && y + 1 < side {
+                edges.push((k, k + side + 1, 0.1));
+            }
+            if k % 5 == 3 {
+                edges.push((k, count, 0.7));
+            }
+        }
+        let mut matrix = Matrix { starts: vec![0], ..Matrix::default() };
+        for row in 1..=count {
+            let mut diagonal = 0.0;
+            for (a, b, weight) in &edges {
+                if *a == row || *b == row {
+                    let other = a + b - row;
+                    diagonal += weight;
+                    if other > 0 {
+                        matrix.columns.push(other - 1);
+                        matrix.values.push(-weight);
+                    }
+                }
+            }
+            matrix.diagonal.push(diagonal);
+            matrix.starts.push(matrix.columns.len() as u32);
+        }
+        let place = |k: u32| DVec3::new(f64::from(k % side), f64::from(k / side), 0.0);
+        (matrix, (1..=count).map(place).collect())
+    }
+
+    #[test]
+    fn solutions_satisfy_their_equations() {
+        for side in [1, 2, 5, 30] {
+            let (matrix, places) = grid(side);
+            let count = places.len();
+            let factor = Factor::new(&matrix, &places, &[count as u32 - 1]).unwrap();
+            let mut order = factor.order.clone();
+            order.sort_unstable();
+            assert_eq!(order, (0..count as u32).collect::<Vec<_>>());
+            for seed in 0..3 {
+                let right: Vec<f64> = (0..count).map(|i| ((i * 31 + seed * 17) % 23) as f64 - 11.0).collect();
+                let x = factor.solve(&right);
+                for (i, right) in right.iter().enumerate() {
+                    let sum: f64 = matrix.row(i).map(|(j, a)| a * x[j]).sum();
+                    let rest = matrix.diagonal[i] * x[i] + sum - right;
+                    assert!(rest.abs() < 1e-9, "{side} {i}: {rest}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn little_fills_in() {
+        let (matrix, places) = grid(64);
+        let factor = Factor::new(&matrix, &places, &[places.len() as u32 - 1]).unwrap();
+        // A band would have 64 entries a column.
+        assert!(factor.rows.len() < 30 * places.len(), "{}", factor.rows.len() / places.len());
+    }
+
+    #[test]
+    fn what_has_no_factor_is_refused() {
+        let (mut matrix, places) = grid(5);
+        matrix.diagonal[7] = -1.0;
+        assert!(Factor::new(&matrix, &places, &[]).is_none());
+    }
+}

@@ -105,7 +105,9 @@ impl<'m> Flows<'m> {
         let mut groups = Groups { rings: vec![ends.start.ring.clone()], singles: Vec::new() };
         groups.rings.extend(ends.others.iter().filter(|tip| tip.open).map(|tip| tip.ring.clone()));
         for (group, ring) in (0..).zip(&groups.rings) {
-            ring.iter().for_each(|v| slot[*v as usize] = group);
+            for vertex in ring {
+                slot[*vertex as usize] = group;
+            }
         }
         for vertex in 0..mesh.points.len() as u32 {
             if slot[vertex as usize] == NONE {
@@ -138,7 +140,9 @@ impl<'m> Flows<'m> {
         };
         let mut field = self.mended(ends, flows);
         let start = ends.start.ring.first().map_or(0.0, |v| field[*v as usize]);
-        field.iter_mut().for_each(|value| *value -= start);
+        for value in &mut field {
+            *value -= start;
+        }
         field
     }
 
@@ -148,7 +152,8 @@ impl<'m> Flows<'m> {
     pub(super) fn lone(&mut self, ends: &Ends, which: usize) -> (Vec<f64>, Vec<u32>) {
         let field = self.mended(ends, |flows| flows.alike(ends, which));
         let rest: Vec<&Tip> = ends.beside(which).collect();
-        let level: f64 = rest.iter().filter_map(|tip| self.sources.get(&key(tip))).map(|it| it.mean(&field)).sum();
+        let level: f64 =
+            rest.iter().filter_map(|tip| self.sources.get(&key(tip))).map(|it| it.mean(&field)).sum();
         let level = level / rest.len().max(1) as f64;
         let mut ground = Vec::new();
         for source in rest.iter().filter_map(|tip| self.sources.get(&key(tip))) {
@@ -241,14 +246,15 @@ impl<'m> Flows<'m> {
             }
             !(above && below)
         };
-        let wrong: Vec<u32> =
-            (0..free.len() as u32).filter(|v| free[*v as usize]).filter(wrong).collect();
+        let wrong: Vec<u32> = (0..free.len() as u32).filter(|v| free[*v as usize]).filter(wrong).collect();
         if wrong.is_empty() {
             return false;
         }
         self.mended += 1;
         if self.mended > MENDS {
-            self.weights.iter_mut().for_each(|weight| *weight = weight.max(LEAST_WEIGHT));
+            for weight in &mut self.weights {
+                *weight = weight.max(LEAST_WEIGHT);
+            }
         }
         for h in wrong.iter().flat_map(|v| mesh.corners(*v)).flat_map(|h| [*h, Mesh::before(*h)]) {
             let twin = mesh.twins[h as usize];
@@ -325,7 +331,9 @@ impl Mesh {
         let mut cap: Vec<(u32, f64)> =
             (0..near.len() as u32).filter(|v| near[*v as usize] <= tip.cap).map(|v| (v, share(v))).collect();
         let whole: f64 = cap.iter().map(|(_, share)| share).sum();
-        cap.iter_mut().for_each(|(_, share)| *share /= whole.max(f64::MIN_POSITIVE));
+        for (_, share) in &mut cap {
+            *share /= whole.max(f64::MIN_POSITIVE);
+        }
         cap
     }
 

@@ -17,14 +17,17 @@ use std::collections::BTreeMap;
 const LINES: usize = 64;
 /// Lines that grow by more than this with the way down are no longer around the limb; a disk in a plane has 2 pi.
 const GROWTH: f64 = 1.6;
+/// A limb is no thicker where it begins than this many times the lower third of its lines.
+const THICKEST: f64 = 1.8;
 /// Length of the line along which a limb is cut off, against its girth.
 const WIDER: f64 = 1.65;
 /// A patch looks at its surroundings as far as this share of the girth.
 const MARGIN: f64 = 0.15;
 /// Tries at a narrower cut.
 const TRIES: u32 = 4;
-/// Most rings of triangles in a patch.
+/// Most rings of triangles in a patch, and their finest edges in stitches.
 const MOST_RINGS: usize = 48;
+const FINEST: f64 = 0.5;
 
 /// A limb that was cut off.
 #[derive(Clone, Debug)]
@@ -83,13 +86,7 @@ impl Mesh {
 
     /// Finds where the limb begins that goes to one of the ends: downward from its tip its level lines keep their length,
     /// and then they spread out over what it grows from.
-    fn root(
-        &self,
-        flows: &mut Flows<'_>,
-        ends: &Ends,
-        which: usize,
-        row: f64,
-    ) -> Result<Root, Fault> {
+    fn root(&self, flows: &mut Flows<'_>, ends: &Ends, which: usize, row: f64) -> Result<Root, Fault> {
         let tip = &ends.others[which];
         let (field, ground) = flows.lone(ends, which);
         let way = self.way(tip, &ground, &field);
@@ -109,7 +106,18 @@ impl Mesh {
             }
             (length(i - window) - length(i + window)) / (2.0 * window as f64 * step)
         };
-        let begin = (0..LINES * 7 / 8).find(|i| growth(*i) < GROWTH);
+        // Of the stretches that keep their length, the lowest that is no thicker than what lies above it: the widest lines of
+        // a body keep theirs, too.
+        let keeps = |i: &usize| growth(*i) < GROWTH;
+        let begins = || {
+            (0..LINES * 7 / 8).filter(|i| keeps(i) && !i.checked_sub(1).is_some_and(|below| keeps(&below)))
+        };
+        let usual = |i: usize| {
+            let mut above: Vec<f64> = (i..LINES).map(length).collect();
+            let low = above.len() / 3;
+            *above.select_nth_unstable_by(low, f64::total_cmp).1
+        };
+        let begin = begins().find(|i| length(*i) < THICKEST * usual(*i)).or_else(|| begins().next());
         // A limb without a neck begins a third up.
         let begin = begin.unwrap_or(LINES / 3);
         let girth = length(begin);
@@ -147,16 +155,17 @@ impl Mesh {
         for (tip, root) in off.into_iter().zip(roots) {
             let (severed, limb) = match &now {
                 None => self.sever(&ends, which, &root, (self, &tip, &root), plan)?,
-                Some((mesh, place)) => match self.still(&tip, &root, place, mesh.points.len()) {
-                    Some(still) => mesh.sever(&ends, which, &still, (self, &tip, &root), plan)?,
-                    // It bore other limbs, or one has been too near.
-                    None => {
- eprintln!("DBG fresh root");
-                        let root = mesh.root(&mut Flows::new(mesh, &ends), &ends, which, plan.gauge.height)?;
+                Some((mesh, place)) => {
+                    if let Some(still) = self.still(&tip, &root, place, mesh.points.len()) {
+                        mesh.sever(&ends, which, &still, (self, &tip, &root), plan)?
+                    } else {
+                        // It bore other limbs, or one has been too near.
+                        let root =
+                            mesh.root(&mut Flows::new(mesh, &ends), &ends, which, plan.gauge.height)?;
                         let tip = ends.others[which].clone();
                         mesh.sever(&ends, which, &root, (mesh, &tip, &root), plan)?
                     }
-                },
+                }
             };
             limbs.push(limb);
             let mut place = severed.place;
@@ -201,7 +210,8 @@ impl Mesh {
             Some((level, kept, edge))
         });
         let (level, kept, edge) = cut.ok_or_else(fault)?;
-        let (mesh, place) = self.closed(&kept, &edge, root.middle, root.girth);
+        let finest = FINEST * plan.gauge.width.min(plan.gauge.height);
+        let (mesh, place) = self.closed(&kept, &edge, (root.middle, root.girth), finest);
         let new = |tip: &Tip| {
             let ring = tip.ring.iter().map(|v| place[*v as usize]).filter(|v| *v != NONE).collect();
             Tip { ring, ..tip.clone() }
@@ -224,7 +234,9 @@ impl Mesh {
             inside.iter().zip(place).all(|(inside, place)| !*inside || *place != NONE)
         };
         let [wide, narrow] = root.levels;
-        let wide = (0..=TRIES).map(|k| wide + (narrow - wide) * f64::from(k) / f64::from(TRIES)).find(|it| whole(*it))?;
+        let wide = (0..=TRIES)
+            .map(|k| wide + (narrow - wide) * f64::from(k) / f64::from(TRIES))
+            .find(|it| whole(*it))?;
         // What is new lies low.
         let mut field = vec![f64::MIN; count];
         for (value, place) in root.field.iter().zip(place).filter(|(_, place)| **place != NONE) {
@@ -348,7 +360,14 @@ impl Mesh {
     }
 
     /// The kept faces with the hole closed by a smooth patch that bulges toward `apex`; and for each vertex its new number.
-    fn closed(&self, kept: &[bool], edge: &[u32], apex: DVec3, girth: f64) -> (Self, Vec<u32>) {
+    /// Its edges are no shorter than those around it, nor than `finest`.
+    fn closed(
+        &self,
+        kept: &[bool],
+        edge: &[u32],
+        (apex, girth): (DVec3, f64),
+        finest: f64,
+    ) -> (Self, Vec<u32>) {
         let mut place = vec![NONE; self.points.len()];
         let mut soup = Soup::default();
         for face in self.faces.iter().zip(kept).filter(|(_, kept)| **kept).map(|(face, _)| face) {
@@ -381,28 +400,43 @@ impl Mesh {
             Some(patch) => Some(patch.project(p)).filter(|q| q.distance(p) < girth).unwrap_or(p),
             None => p,
         };
-        let rings = (edge.len() / 6).clamp(3, MOST_RINGS);
-        let count = edge.len();
+        let length = self.length(edge);
+        let coarser = (length / (edge.len() as f64 * finest)).min(1.0);
+        let around = edge.len() as f64 * coarser;
+        let rings = ((around / std::f64::consts::TAU) as usize).clamp(3, MOST_RINGS);
         let mut before: Vec<u32> = edge.iter().map(|v| place[*v as usize]).collect();
-        for ring in 1..rings {
+        for ring in 1..=rings {
             let share = ring as f64 / rings as f64;
+            // As wide apart around as from ring to ring.
+            let count = if ring == rings { 1 } else { ((around * (1.0 - share)) as usize).max(5) };
             let first = soup.points.len() as u32;
-            soup.points.extend(edge.iter().map(|v| onto(self.point(*v).lerp(apex, share))));
+            soup.points.extend((0..count).map(|k| {
+                let at = k as f64 / count as f64 * edge.len() as f64;
+                let [a, b] = [at as usize, at as usize + 1].map(|k| self.point(edge[k % edge.len()]));
+                onto(a.lerp(b, at.fract()).lerp(apex, share))
+            }));
             let here: Vec<u32> = (first..first + count as u32).collect();
-            for k in 0..count {
-                let next = (k + 1) % count;
-                soup.faces.push([before[next], before[k], here[k]]);
-                soup.faces.push([before[next], here[k], here[next]]);
-            }
+            zip(&before, &here, &mut soup.faces);
             before = here;
-        }
-        let center = soup.points.len() as u32;
-        soup.points.push(onto(apex));
-        for k in 0..count {
-            soup.faces.push([before[(k + 1) % count], before[k], center]);
         }
         let mut mesh = Self::link(soup);
         mesh.find_boundaries();
         (mesh, place)
+    }
+}
+
+/// Triangles between two rings: the outer one, and one inside of it that may have fewer vertices.
+fn zip(outer: &[u32], inner: &[u32], faces: &mut Vec<[u32; 3]>) {
+    let (m, n) = (outer.len(), inner.len());
+    let (mut i, mut j) = (0, 0);
+    while i < m || (n > 1 && j < n) {
+        let (a, b) = (outer[i % m], inner[j % n]);
+        if i < m && (n == 1 || (i + 1) * n <= (j + 1) * m) {
+            i += 1;
+            faces.push([outer[i % m], a, b]);
+        } else {
+            j += 1;
+            faces.push([a, b, inner[j % n]]);
+        }
     }
 }
