@@ -140,7 +140,7 @@ impl Ring {
             }
             let step = if bend > 0.0 { slope / bend } else { 0.0 };
             // Equal rings differ by rounding only: they stay as they are.
-            if step.abs() < 1e-8 {
+            if step.abs() < 1e-9 {
                 break;
             }
             phase -= step.clamp(-0.5 / count as f64, 0.5 / count as f64);

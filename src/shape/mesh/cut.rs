@@ -41,7 +41,7 @@ const LEAP: f64 = 3.0;
 const MOST_AREA: f64 = 1.25;
 const SAMPLES: [u32; 2] = [16, 24];
 /// A limb leaves the surface that it grows from where it lies this far (stitches) from it.
-const LEAVES: f64 = 0.8;
+const LEAVES: f64 = 1.0;
 /// How far (stitches) the first row of a limb may lie off the rim in which it meets its parent.
 const GIVE: f64 = 1.0;
 

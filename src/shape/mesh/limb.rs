@@ -25,9 +25,9 @@ const WIDER: f64 = 1.65;
 const MARGIN: f64 = 0.15;
 /// Tries at a narrower cut.
 const TRIES: u32 = 4;
-/// Most rings of triangles in a patch, and their finest edges in stitches.
+/// Most rings of triangles in a patch, and shortest and longest edges in stitches.
 const MOST_RINGS: usize = 48;
-const FINEST: f64 = 0.5;
+const EDGES: [f64; 2] = [0.5, 1.0];
 
 /// A limb that was cut off.
 #[derive(Clone, Debug)]
@@ -210,8 +210,8 @@ impl Mesh {
             Some((level, kept, edge))
         });
         let (level, kept, edge) = cut.ok_or_else(fault)?;
-        let finest = FINEST * plan.gauge.width.min(plan.gauge.height);
-        let (mesh, place) = self.closed(&kept, &edge, (root.middle, root.girth), finest);
+        let edges = EDGES.map(|stitches| stitches * plan.gauge.width.min(plan.gauge.height));
+        let (mesh, place) = self.closed(&kept, &edge, (root.middle, root.girth), edges);
         let new = |tip: &Tip| {
             let ring = tip.ring.iter().map(|v| place[*v as usize]).filter(|v| *v != NONE).collect();
             Tip { ring, ..tip.clone() }
@@ -360,13 +360,13 @@ impl Mesh {
     }
 
     /// The kept faces with the hole closed by a smooth patch that bulges toward `apex`; and for each vertex its new number.
-    /// Its edges are no shorter than those around it, nor than `finest`.
+    /// Its edges are as long as those around it within the given bounds.
     fn closed(
         &self,
         kept: &[bool],
         edge: &[u32],
         (apex, girth): (DVec3, f64),
-        finest: f64,
+        [finest, coarsest]: [f64; 2],
     ) -> (Self, Vec<u32>) {
         let mut place = vec![NONE; self.points.len()];
         let mut soup = Soup::default();
@@ -401,8 +401,7 @@ impl Mesh {
             None => p,
         };
         let length = self.length(edge);
-        let coarser = (length / (edge.len() as f64 * finest)).min(1.0);
-        let around = edge.len() as f64 * coarser;
+        let around = length / (length / edge.len() as f64).clamp(finest, coarsest);
         let rings = ((around / std::f64::consts::TAU) as usize).clamp(3, MOST_RINGS);
         let mut before: Vec<u32> = edge.iter().map(|v| place[*v as usize]).collect();
         for ring in 1..=rings {
