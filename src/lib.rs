@@ -61,7 +61,8 @@ use lower::divide::{Parent, Share};
 use metrics::{Measure, Mesh, Sampler};
 use preview::{Refused, predict};
 use rayon::prelude::*;
-use shape::{Attachment, End, Joint, Mirrored, Shape, Tube};
+use shape::{Attachment, Drift, End, Joint, Mirrored, ParametricSurface, Shape, Tube, Twisted};
+use std::borrow::Cow;
 
 /// What the stages before printing may be told.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -273,18 +274,22 @@ pub fn measure(shape: &Shape, program: &Program) -> Measure {
     sampler.finish()
 }
 
-/// Samples one tube; as its maker works it, so that all of it is told as for right-handed work.
+/// Samples one tube as its stitches are laid: for the right hand, and standing straight.
 fn sample(shape: &Shape, index: usize, graph: &Graph, maker: Maker, sampler: &mut Sampler) {
     let Some(tube) = shape.tubes.get(index) else { return };
-    let ends = [tube.start, tube.end];
-    match maker.hand {
-        Hand::Right => sampler.add_on(&*tube.surface, ends, &net(shape, index, graph)),
-        Hand::Left => {
-            let mirrored = graph.clone().mirrored();
-            sampler.add_on(&Mirrored(&*tube.surface), ends, &net(shape, index, &mirrored));
-        }
-    }
     sampler.count(graph);
+    let mirror = Mirrored(&*tube.surface);
+    let (mut surface, mut graph): (&dyn ParametricSurface, _) = match maker.hand {
+        Hand::Right => (&*tube.surface, Cow::Borrowed(graph)),
+        Hand::Left => (&mirror, Cow::Owned(graph.clone().mirrored())),
+    };
+    let drift = (maker.lean != 0.0).then(|| Drift::new(surface, &shape.gauge, maker.lean));
+    let twisted = drift.as_ref().map(|drift| Twisted { surface, drift });
+    if let (Some(drift), Some(twisted)) = (&drift, &twisted) {
+        graph = Cow::Owned(drift.as_laid(graph.into_owned()));
+        surface = twisted;
+    }
+    sampler.add_on(surface, [tube.start, tube.end], &net(shape, index, &graph));
 }
 
 /// Measures each part by itself, in the order of the tubes.

@@ -93,6 +93,9 @@ fn extras(program: &Verified<'_>, scene: &Scene) -> Value {
     if program.maker.hand == Hand::Left {
         extras["hand"] = program.maker.hand.word().into();
     }
+    if program.maker.lean != 0.0 {
+        extras["lean"] = program.maker.lean.into();
+    }
     extras
 }
 

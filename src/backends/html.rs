@@ -244,9 +244,13 @@ fn about(program: &Verified<'_>, scene: &Result<Scene, Refused>, out: &mut Strin
         Hand::Right => "",
         Hand::Left => "<dt>Hand</dt><dd>for left-handed work; the view shows what comes out then</dd>",
     };
+    let lean = match program.maker.lean {
+        0.0 => String::new(),
+        lean => format!("<dt>Lean</dt><dd>for stitches that drift by {lean:+} stitches a round</dd>"),
+    };
     let _ = write!(
         out,
-        "<dl><dt>Pattern</dt><dd>verified by working every loop</dd>{hand}\
+        "<dl><dt>Pattern</dt><dd>verified by working every loop</dd>{hand}{lean}\
          <dt>Gauge</dt><dd>{gauge}</dd><dt>Places of the stitches</dt><dd>{}</dd>\
          <dt>Yarn length</dt><dd>an estimate from one measured yarn</dd>\
          <dt>Yarn in the view</dt><dd>drawn to the stitch size; strands may touch or pass through each other</dd></dl>\n\

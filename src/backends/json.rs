@@ -7,8 +7,8 @@ use crate::diag::Sink;
 use crate::ir::verify::{PartFacts, RowFacts, Verified};
 use crate::ir::yarn::SPARE;
 use crate::ir::{
-    Block, Direction, Entry, Finish, Graph, Kind, NodeId, Part, PartId, Program, Row, Segment, Start, Step,
-    Stitch,
+    Block, Direction, Entry, Finish, Graph, Kind, Maker, NodeId, Part, PartId, Program, Row, Segment, Start,
+    Step, Stitch,
 };
 use serde::Deserialize;
 use std::io::{self, Write};
@@ -54,7 +54,8 @@ fn document(program: &Verified<'_>, out: &mut impl Write) -> io::Result<()> {
         }
     }
     if !program.maker.is_usual() {
-        writeln!(out, "\"maker\": {{\"hand\": \"{}\"}},", program.maker.hand.word())?;
+        let Maker { hand, lean } = program.maker;
+        writeln!(out, "\"maker\": {{\"hand\": \"{}\", \"lean\": {}}},", hand.word(), Fraction(lean))?;
     }
     writeln!(out, "\"colors\": {},", List(program.colors.iter().map(|color| quoted(color))))?;
     writeln!(out, "\"stitches\": {},", program.facts().stitches(program))?;

@@ -112,6 +112,9 @@ impl<W: io::Write> Writer<'_, W> {
         if program.maker.hand != Hand::Right {
             self.tags.text("hand", program.maker.hand.word());
         }
+        if program.maker.lean != 0.0 {
+            self.tags.real("lean", program.maker.lean);
+        }
         self.tags.open()?;
         if let Some(gauge) = &program.gauge {
             self.gauge(gauge)?;

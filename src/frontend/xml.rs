@@ -11,6 +11,7 @@ mod values;
 use super::{Input, Reader};
 use crate::diag::{Code, Sink, Source, Sources, Span, did_you_mean};
 use crate::ir::exchange::{MAJOR, MINOR, NAMESPACE, Words};
+use crate::ir::maker::MOST_LEAN;
 use crate::ir::yarn::Hook;
 use crate::ir::{
     Block, Gauge, GaugeOrigin, Graph, Hand, Maker, Op, Part, PartId, Pattern, Program, Segment, Start,
@@ -79,10 +80,24 @@ impl<'t> Document<'t, '_, '_> {
     fn read(&mut self) -> Result<Program, Stop> {
         let Next::Open(root) = self.cursor.next()? else { return Err(Stop) };
         self.version(root)?;
-        self.cursor.only(root, &["version", "name", "unit", "hand"])?;
+        self.cursor.only(root, &["version", "name", "unit", "hand", "lean"])?;
         let name = self.cursor.text_of(root, "name")?.0.into_owned();
         self.cursor.word_of(root, "unit", &[("mm", ())])?;
-        let maker = Maker { hand: self.cursor.word("hand", Hand::WORDS)?.unwrap_or_default() };
+        let mut maker =
+            Maker { hand: self.cursor.word("hand", Hand::WORDS)?.unwrap_or_default(), ..Maker::default() };
+        if let Some(attribute) = self.cursor.get("lean") {
+            maker.lean = self.cursor.real_of(root, "lean")?;
+            if maker.lean.abs() > MOST_LEAN {
+                let (message, span) =
+                    (format!("`lean` is {}", maker.lean), self.cursor.value_span(attribute));
+                self.cursor.at(
+                    Code::XmlValue,
+                    message,
+                    span,
+                    "stitches lean by at most one stitch a round",
+                )?;
+            }
+        }
         let (mut gauge, mut colors) = (None, Vec::new());
         let (mut parts, mut graphs) = (Vec::new(), Vec::new());
         let mut children = Children::of(root, &PROGRAM);

@@ -26,8 +26,10 @@ pub use options::{Options, Preset};
 
 use crate::diag::{Code, Diagnostic, Sink};
 use crate::ir::maker::mirrored;
-use crate::ir::{Gauge, Graph, Hand, MAX_LOOPS};
-use crate::shape::{Attachment, End, Joint, Mirrored, ParametricSurface, Tube, area, is_revolution};
+use crate::ir::{Gauge, Graph, Hand, MAX_LOOPS, Maker};
+use crate::shape::{
+    Attachment, Drift, End, Joint, Mirrored, ParametricSurface, Tube, Twisted, area, is_revolution,
+};
 use glam::DVec3;
 use relax::{Effort, Ends, Mark, Relaxer};
 use rows::Rows;
@@ -43,6 +45,9 @@ const POLE_DISTANCE: f64 = 0.3;
 
 /// Rows by which a given first row counts as higher, for each turn that a try would turn another one by.
 const LIFT: f64 = 4.0;
+
+/// Drift, in turns, that is worth a word.
+const MUCH_DRIFT: f64 = 0.75;
 
 const GENTLER: &str = "bend the curve less, or make the sections change more gently";
 
@@ -81,12 +86,19 @@ fn lay(
     }
     let options = &options.resolved();
     // What the left hand works comes out mirrored, so its pattern is made for the mirror image.
-    let hand = options.maker().hand;
+    let Maker { hand, lean } = options.maker();
     let mirror = Mirrored(&*tube.surface);
     let (target, loops): (&dyn ParametricSurface, _) = match hand {
         Hand::Right => (&*tube.surface, loops.map(Cow::Borrowed)),
         Hand::Left => (&mirror, loops.map(|loops| loops.iter().copied().map(mirrored).collect())),
     };
+    // What leans twists as it is worked, so its pattern is made for the shape twisted the other way.
+    let drift = (lean != 0.0).then(|| Drift::new(target, gauge, lean));
+    let twisted = drift.as_ref().map(|drift| Twisted { surface: target, drift });
+    let target = twisted.as_ref().map_or(target, |twisted| twisted as &dyn ParametricSurface);
+    if let Some(drift) = &drift {
+        warn_of(drift.turns(1.0), &tube.name, sink);
+    }
     // A branch in a slit begins at an end of it, with as many loops below as above.
     let slit = matches!(tube.attachment, Some(Attachment { joint: Joint::Opening, .. }));
     let picked_up = loops.map(|loops| first_row::picked_up(target, &loops));
@@ -157,10 +169,23 @@ fn lay(
     }
     let poles = Ground::new(surface, ends, &rows, gauge, options).poles;
     let graph = finish::graph(&sheet, lifted.as_ref().unwrap_or(&rows), start, poles, turn);
+    let graph = match &drift {
+        Some(drift) => drift.come_out(graph),
+        None => graph,
+    };
     Some(match hand {
         Hand::Right => graph,
         Hand::Left => graph.mirrored(),
     })
+}
+
+/// Warns of a drift that no one would have overlooked.
+fn warn_of(turns: f64, part: &str, sink: &mut Sink<'_>) {
+    if turns.abs() > MUCH_DRIFT {
+        let message = format!("stitches that lean so turn {part} by {turns:.2} of a turn");
+        let help = "work 20 rounds of a tube, and see by how many stitches a column has moved: `lean` is a twentieth of it";
+        sink.push(Diagnostic::new(Code::MuchLean, message).in_round(part, None).help(help));
+    }
 }
 
 /// A finished sheet, the stitches of its first row, and where around the tube the helix began.

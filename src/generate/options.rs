@@ -1,5 +1,6 @@
 //! What the generator may be told; each option says what it changes and what it costs.
 
+use crate::ir::maker::MOST_LEAN;
 use crate::ir::{Hand, Maker};
 use crate::shape::Wishes;
 use serde::Deserialize;
@@ -47,6 +48,9 @@ pub struct Options {
     /// The hand that holds the hook, `right` or `left`; where nothing is said, what the shape file says, and else the right
     /// one. For the left hand the pattern is that of the mirror image, so that the object comes out as designed.
     pub hand: Option<Hand>,
+    /// Stitches by which columns drift in each round of a maker, positive in working direction; where nothing is said, what
+    /// the shape file says, and else 0. The pattern is that of the shape twisted the other way.
+    pub lean: Option<f64>,
     /// How much pleasant words are worth, from 0 to 1; where nothing is said, what the shape file says, and else 0. Counts
     /// change in fewer rounds, shapings lie at equal distances, and short rows are plain, at the price of fidelity.
     pub readability: Option<f64>,
@@ -74,6 +78,7 @@ impl Default for Options {
             tries: 4,
             symmetric: true,
             hand: None,
+            lean: None,
             readability: None,
             paper: false,
             settle: false,
@@ -87,6 +92,7 @@ impl Options {
     pub fn granting(&self, wishes: &Wishes) -> Self {
         Self {
             hand: self.hand.or(wishes.hand),
+            lean: self.lean.or(wishes.lean),
             readability: self.readability.or(wishes.readability),
             ..self.clone()
         }
@@ -99,7 +105,7 @@ impl Options {
 
     /// Whom the pattern is for.
     pub fn maker(&self) -> Maker {
-        Maker { hand: self.hand.unwrap_or_default() }
+        Maker { hand: self.hand.unwrap_or_default(), lean: self.lean.unwrap_or(0.0) }
     }
 
     /// The options with those of the preset taken in.
@@ -137,6 +143,7 @@ impl Options {
             ((1..=1000).contains(&self.tries), "tries", "from 1 to 1000"),
             (between(self.squareness, 0.0, 100.0), "squareness", "from 0 to 100"),
             (between(self.ease(), 0.0, 1.0), "readability", "from 0 to 1"),
+            (between(self.maker().lean.abs(), 0.0, MOST_LEAN), "lean", "from -1 to 1 stitches a round"),
         ]
         .into_iter()
         .find(|(fine, ..)| !fine)

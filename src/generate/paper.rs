@@ -41,6 +41,7 @@ pub(super) fn options(base: &Options) -> Options {
         symmetric: false,
         short_rows: base.short_rows,
         hand: base.hand,
+        lean: base.lean,
         ..Options::default()
     }
 }

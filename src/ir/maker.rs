@@ -8,10 +8,15 @@ use serde::Deserialize;
 pub struct Maker {
     /// The hand that holds the hook.
     pub hand: Hand,
+    /// Stitches by which columns drift in each round, positive in working direction; 0 for stitches that stand straight.
+    pub lean: f64,
 }
 
+/// Greatest lean of a maker's stitches that is believed, in stitches a round.
+pub const MOST_LEAN: f64 = 1.0;
+
 impl Maker {
-    /// True where nothing has to be said: right-handed.
+    /// True where nothing has to be said: right-handed, and stitches that stand straight.
     pub fn is_usual(&self) -> bool {
         *self == Self::default()
     }

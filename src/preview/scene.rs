@@ -141,6 +141,9 @@ pub enum Refused {
         /// How many there are.
         stitches: u64,
     },
+    /// The prediction has stitches that stand straight.
+    #[error("the drift of stitches that lean is not predicted; the target shows what comes out")]
+    Leans,
     /// The forces have no solution.
     #[error("the shape cannot be predicted from this pattern; the chart (`svg`) shows its stitches")]
     NotPredicted,
@@ -194,6 +197,9 @@ impl Scene {
         scene.yarn = yarn.unwrap_or_else(|| thickness(program.gauge, gauge[0]));
         scene.yarn = scene.yarn.clamp(0.05 * gauge[0].min(gauge[1]), 0.40 * gauge[0].min(gauge[1]));
         scene.thickness = LAYERS * scene.yarn;
+        if !program.graphs.is_empty() && places == Places::Predicted && program.maker.lean != 0.0 {
+            return Err(Refused::Leans);
+        }
         if program.graphs.is_empty() || places == Places::Predicted {
             sink.stage("predict");
             let (places, rest) = predict::places(&nets, gauge, sink)?;

@@ -3,6 +3,7 @@
 pub mod analytic;
 pub mod bezier;
 pub mod branch;
+pub mod drift;
 pub mod export;
 mod fold;
 pub mod frame;
@@ -22,6 +23,7 @@ pub(crate) mod stack;
 pub mod sweep;
 
 pub use bezier::Bezier;
+pub use drift::{Drift, Twisted};
 pub use measure::{area, girth, is_revolution, length_along};
 pub use mirror::Mirrored;
 pub use ring::Ring;
@@ -151,6 +153,8 @@ pub struct Shape {
 pub struct Wishes {
     /// The hand that holds the hook.
     pub hand: Option<Hand>,
+    /// Stitches by which columns drift in each round, positive in working direction.
+    pub lean: Option<f64>,
     /// How much pleasant words are worth, from 0 to 1.
     pub readability: Option<f64>,
 }

@@ -1,4 +1,4 @@
-//! Patterns for one maker: left-handed work.
+//! Patterns for one maker: left-handed work, and stitches that lean.
 
 use super::branches::{read_back, written};
 use super::command::{Folder, run, stderr, stdout};
@@ -10,9 +10,10 @@ use picot::frontend::{Input, reader};
 use picot::ir::joins::pairs;
 use picot::ir::maker::mirrored;
 use picot::ir::verify::verify;
-use picot::ir::{Graph, Hand, PartId, Program};
+use picot::ir::{Graph, Hand, Kind, PartId, Program};
+use picot::math::TAU;
 use picot::preview::{Mesh, Places, Scene, View};
-use picot::shape::Shape;
+use picot::shape::{Drift, ParametricSurface, Shape};
 use std::path::Path;
 
 /// A bent, flat, lopsided claw; `y` is 1, or -1 for its mirror image. It begins nearly along z, with x across, so that
@@ -215,6 +216,198 @@ fn the_command_line_and_the_file_name_a_hand() {
     let text = folder.path("plain.txt");
     run(&["build", &plain, "-o", &text]).success();
     assert!(stdout(&run(&["build", &text, "--to", "crochet", "--left-handed"])).contains("hand=left"));
+}
+
+fn leaning(lean: f64) -> Options {
+    let mut options = Options::default();
+    options.generate.lean = Some(lean);
+    options
+}
+
+/// A straight vase with a belly on one side; the worst distance from it of a point that lies somewhere on a round.
+const BELLY: &str = "name = 'belly'\nunit = 'mm'\n[gauge]\nstitch = { width = 3, height = 3 }\n[trunk]\n\
+    curve = [[0, 0, 0], [0, 0, 120]]\ninterpolation = 'smooth'\nsection = [{ at = 0, circle = 18 }, \
+    { at = 0.3, circle = 20 }, { at = 0.6, circle = 28, offset = [9, 0] }, { at = 1, circle = 16 }]\n";
+
+/// Root mean square distance of points from a surface.
+fn distance(surface: &dyn ParametricSurface, points: impl Iterator<Item = DVec3>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for point in points {
+        let at = |u: f64, v: f64| surface.point(u, v).distance_squared(point);
+        let mut best = (f64::MAX, 0.0, 0.0);
+        for i in 0..=40 {
+            for k in 0..48 {
+                let (u, v) = (f64::from(i) / 40.0, f64::from(k) / 48.0);
+                if at(u, v) < best.0 {
+                    best = (at(u, v), u, v);
+                }
+            }
+        }
+        let mut step = 0.02;
+        while step > 1e-5 {
+            let (_, u, v) = best;
+            let near = [(u + step, v), (u - step, v), (u, v + step), (u, v - step)];
+            let next = near.into_iter().map(|(u, v)| (at(u, v), u, v)).min_by(|a, b| a.0.total_cmp(&b.0));
+            match next.filter(|next| next.0 < best.0) {
+                Some(next) => best = next,
+                None => step *= 0.5,
+            }
+        }
+        sum += best.0;
+        count += 1.0;
+    }
+    (sum / count as f64).sqrt()
+}
+
+/// What becomes of stitches that stand as laid once each round has drifted by its lean: all that lies above a round turns
+/// by so many of its stitches about its middle. Told from the stitches alone.
+fn drifted(program: &Program, laid: &Graph, lean: f64) -> Vec<DVec3> {
+    let height = program.gauge.expect("known").height;
+    let counts = leaves(program);
+    let mut rounds: Vec<(f64, DVec3, DVec3)> = Vec::new();
+    for (k, count) in counts.iter().enumerate() {
+        let of = |node: &&picot::ir::Node| (k as f64..k as f64 + 1.0).contains(&node.tau);
+        let mut row: Vec<(f64, DVec3)> =
+            laid.nodes.iter().filter(of).map(|node| (node.v, node.position)).collect();
+        row.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if row.len() < 3 {
+            break;
+        }
+        let center = row.iter().map(|(_, at)| *at).sum::<DVec3>() / row.len() as f64;
+        // A round climbs by a row; the axis is that of its level.
+        let area = |row: &[(f64, DVec3)]| -> DVec3 {
+            let next = row.iter().cycle().skip(1);
+            row.iter().zip(next).map(|(a, b)| (a.1 - center).cross(b.1 - center)).sum()
+        };
+        let down = area(&row).normalize();
+        let mut level: Vec<(f64, DVec3)> = Vec::new();
+        for node in laid.nodes.iter().filter(of) {
+            level.push((node.v, node.position + down * ((node.tau - k as f64 - 0.5) * height)));
+        }
+        level.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let area = area(&level);
+        rounds.push((lean / count, center, area.normalize()));
+    }
+    let turned = |node: &picot::ir::Node| {
+        // The highest round comes first: its axis is as laid.
+        rounds.iter().enumerate().rev().fold(node.position, |at, (k, (turns, center, axis))| {
+            let (sin, cos) = (TAU * turns * (node.tau - k as f64).clamp(0.0, 1.0)).sin_cos();
+            let arm = at - *center;
+            *center + arm * cos + axis.cross(arm) * sin + *axis * (axis.dot(arm) * (1.0 - cos))
+        })
+    };
+    laid.nodes.iter().map(turned).collect()
+}
+
+/// Stitches of each round.
+fn leaves(program: &Program) -> Vec<f64> {
+    let mut sink = Sink::new();
+    let verified = verify(program, &mut sink).expect("sound");
+    let part = &verified.facts().parts[0];
+    let rows = program.pattern.parts[0].rows.iter().zip(&part.rows);
+    rows.flat_map(|(row, facts)| (0..row.times).map(|_| f64::from(facts.produces))).collect()
+}
+
+#[test]
+fn drift_twists_a_leaning_pattern_back_to_the_shape() {
+    let (_, d) = shapes().into_iter().find(|(name, _)| name == "paper-d").expect("shipped");
+    for (designed, lean) in [(shape(BELLY), 0.15), (shape(BELLY), -0.3), (at(&d), 0.1)] {
+        let surface = &*designed.tubes[0].surface;
+        let straight = make(&designed, &leaning(0.0));
+        let program = make(&designed, &leaning(lean));
+        assert!((program.maker.lean - lean).abs() < 1e-12);
+        let drift = Drift::new(surface, &designed.gauge, lean);
+        let laid = drift.as_laid(program.graphs[0].clone());
+        let good = distance(surface, straight.graphs[0].nodes.iter().map(|node| node.position));
+        let ignored = distance(surface, drifted(&straight, &straight.graphs[0], lean).into_iter());
+        let unturned = distance(surface, laid.nodes.iter().map(|node| node.position));
+        let compensated = distance(surface, drifted(&program, &laid, lean).into_iter());
+        assert!(good < 3e-3, "stitches lie on the shape: {good}");
+        println!("{}, lean {lean}: {ignored:.3} mm ignored, {compensated:.3} mm compensated", designed.name);
+        assert!(ignored > 0.8 && unturned > 0.8, "the drift matters: {ignored}, {unturned}");
+        assert!(
+            compensated < 0.15 * ignored,
+            "at {lean}: {compensated} mm, {ignored} mm where it is ignored"
+        );
+        // Pictures show what comes out: the shape.
+        let shown = distance(surface, program.graphs[0].nodes.iter().map(|node| node.position));
+        assert!(shown < 3e-3, "{shown}");
+        for node in &program.graphs[0].nodes {
+            assert!(surface.point(node.u, node.v).distance(node.position) < 1e-3);
+        }
+        assert_ne!(straight.pattern, program.pattern, "the shaping moves");
+    }
+}
+
+#[test]
+fn lean_changes_nothing_on_what_is_round() {
+    for (name, path) in shapes() {
+        if !["ball", "vase", "cone", "capsule", "pear"].contains(&name.as_str()) {
+            continue;
+        }
+        let shape = at(&path);
+        assert_eq!(make(&shape, &leaning(0.2)).pattern, make(&shape, &leaning(0.0)).pattern, "{name}");
+    }
+}
+
+#[test]
+fn every_shape_comes_out_as_well_with_stitches_that_lean() {
+    for (name, path) in shapes() {
+        let shape = at(&path);
+        let plain = picot::measure(&shape, &make(&shape, &leaning(0.0)));
+        let mut options = leaning(0.08);
+        if name.len() % 2 == 0 {
+            options.generate.hand = Some(Hand::Left);
+        }
+        let program = make(&shape, &options);
+        let leaning = picot::measure(&shape, &program);
+        let no_worse = |a: f64, b: f64, give: f64| assert!(a < b + give, "{name}: {a} and {b}");
+        no_worse(leaning.length_error.chord.mean_abs, plain.length_error.chord.mean_abs, 0.012);
+        no_worse(leaning.skew.all.mean, plain.skew.all.mean, 0.03);
+        no_worse((leaning.coverage - 1.0).abs(), (plain.coverage - 1.0).abs(), 0.03);
+        assert!(
+            leaning.level.missing.abs() < plain.level.missing.abs() + 1.0,
+            "{name}: {}",
+            leaning.level.missing
+        );
+        for (tube, graph) in shape.tubes.iter().zip(&program.graphs) {
+            for node in graph.nodes.iter().filter(|node| node.u > 0.0).take(tube_end(tube, graph)) {
+                let off = tube.surface.point(node.u, node.v).distance(node.position);
+                assert!(off < 0.01 * shape.gauge.width, "{name}, {}: {off}", tube.name);
+            }
+        }
+    }
+}
+
+/// Nodes that are surely laid on the surface: chains across a fork are not.
+fn tube_end(_: &picot::shape::Tube, graph: &Graph) -> usize {
+    let chain = graph.tiles.iter().position(|tile| tile.stitch.is_some_and(|stitch| stitch.kind == Kind::Ch));
+    chain.map_or(usize::MAX, |tile| tile.min(graph.nodes.len()) * 3 / 4)
+}
+
+#[test]
+fn the_lean_is_told_everywhere() {
+    let folder = Folder::new();
+    let file = folder.file("belly.toml", BELLY.to_owned() + "[maker]\nlean = -0.06\n");
+    let text = stdout(&run(&["build", &file]).success());
+    assert!(text.contains("\nlean: -0.06\n") && text.contains("drift by -0.06 stitches a round"), "{text}");
+    assert_eq!(read_back(&text).maker.lean, -0.06);
+    let xml = folder.path("belly.xml");
+    run(&["build", &file, "-o", &xml]).success();
+    assert_eq!(stdout(&run(&["build", &xml, "--to", "crochet"])), text);
+    let json: serde_json::Value =
+        serde_json::from_str(&stdout(&run(&["build", &xml, "--to", "json"]))).expect("JSON");
+    assert_eq!(json["maker"]["lean"], -0.06);
+    assert!(
+        stderr(&run(&["build", &xml, "--machine", "swg091n2", "--to", "knitout"]).code(4)).contains("E2207")
+    );
+    assert!(stderr(&run(&["build", &file, "--set", "lean=2"]).code(2)).contains("from -1 to 1"));
+    assert!(stderr(&run(&["build", &file, "--set", "lean=0.9"]).success()).contains("W1306"));
+    let measured = stdout(&run(&["measure", &file, "--predict"]).success());
+    assert!(measured.contains("predicted no"), "{measured}");
+    let picture = folder.path("belly.png");
+    run(&["build", &file, "-o", &picture, "--set", "places=predicted"]).code(4);
+    run(&["build", &file, "-o", &picture]).success();
 }
 
 #[test]

@@ -114,7 +114,8 @@ impl Grower {
         let graphs =
             if self.with_graph { parts.iter().map(|part| self.graph(part)).collect() } else { Vec::new() };
         let hand = if self.one_in(3) { Hand::Left } else { Hand::Right };
-        Program { name, gauge, maker: Maker { hand }, colors, pattern: Pattern { parts }, graphs }
+        let lean = if self.one_in(3) { f64::from(self.below(2001)) / 1000.0 - 1.0 } else { 0.0 };
+        Program { name, gauge, maker: Maker { hand, lean }, colors, pattern: Pattern { parts }, graphs }
     }
 
     fn begin(

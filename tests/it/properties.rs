@@ -178,12 +178,14 @@ fn run(count: u64) {
     let often = Options::default();
     let simple = Options { readability: Some(1.0), ..once.clone() };
     let left = Options { hand: Some(Hand::Left), ..once.clone() };
+    let leaning = Options { lean: Some(-0.1), ..once.clone() };
     for index in 0..count {
         let (spec, gauge) = surface(&mut random);
         let options = match index % 8 {
             0 => &often,
             2 => &left,
             4 => &simple,
+            6 => &leaning,
             _ => &once,
         };
         let outcome = catch_unwind(AssertUnwindSafe(|| compile(&spec, gauge, options)));

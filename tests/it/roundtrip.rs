@@ -492,7 +492,10 @@ fn program(tape: &mut Tape<'_>) -> Program {
         }
     }
     let colors = palette.iter().take(usize::from(colors)).map(|color| (*color).to_owned()).collect();
-    let maker = picot::ir::Maker { hand: if tape.below(3) == 2 { Hand::Left } else { Hand::Right } };
+    let maker = picot::ir::Maker {
+        hand: if tape.below(3) == 2 { Hand::Left } else { Hand::Right },
+        lean: if tape.below(3) == 2 { f64::from(tape.below(2001)) / 1000.0 - 1.0 } else { 0.0 },
+    };
     Program {
         name: "thing".into(),
         gauge: None,

@@ -26,6 +26,9 @@ pub(super) fn write(options: &Crochet, program: &Verified<'_>, text: &mut Text<'
     let bare = uses.short_rows.then_some("turn-mark=bare");
     let left = (program.maker.hand == Hand::Left).then_some("hand=left");
     let conventions: Vec<&str> = bare.into_iter().chain(left).collect();
+    if program.maker.lean != 0.0 {
+        text.line(&format!("lean: {}", lean(program)))?;
+    }
     if !conventions.is_empty() {
         text.line(&format!("convention: {}", conventions.join(", ")))?;
     }
@@ -47,6 +50,9 @@ pub(super) fn write(options: &Crochet, program: &Verified<'_>, text: &mut Text<'
     }
     if program.maker.hand == Hand::Left {
         text.prose(prose.left_handed)?;
+    }
+    if program.maker.lean != 0.0 {
+        text.prose(&fill(prose.lean, &[("lean", &lean(program))]))?;
     }
     let terms = options.terms.name().to_uppercase();
     let list = abbreviations(options, &uses, program);
@@ -71,6 +77,11 @@ pub(super) fn write(options: &Crochet, program: &Verified<'_>, text: &mut Text<'
         text.prose(&fill(prose.parts, &[("list", &list.collect::<Vec<_>>().join(", "))]))?;
     }
     Ok(())
+}
+
+/// Stitches a round with a sign; as many digits as read back to the same.
+fn lean(program: &Verified<'_>) -> String {
+    format!("{:+}", program.maker.lean)
 }
 
 /// `2.5 x 2.5 mm a stitch, 40 sts x 40 rnds in 10 cm`.

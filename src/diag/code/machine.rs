@@ -209,10 +209,11 @@ TooFewCarriers = "E2205", "too few carriers for the colors";
 LimbsInTheWay = "E2206", "limbs in each other's way";
 /// The pattern is made for the habits of a maker's hand, which a machine has not.
 ///
-/// A pattern for left-handed work is that of the mirror image: a left hand mirrors it back, a machine does not.
+/// A pattern for left-handed work is that of the mirror image: a left hand mirrors it back, a machine does not. A
+/// pattern for stitches that lean is twisted, and knit loops do not twist it back.
 ///
 /// Wrong: `picot build sleeve.toml --set hand=left --machine kniterate -o sleeve.k`
-/// Right: the same without `--set hand=left`, and without `hand` in the table `[maker]` of the file
+/// Right: the same without `--set hand=left`, and without `hand` and `lean` in the table `[maker]` of the file
 ForHands = "E2207", "made for a hand, not for a machine";
 /// A k-code file has no HOME line.
 ///

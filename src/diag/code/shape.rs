@@ -1,4 +1,4 @@
-//! Diagnostics of shapes and of what is made of them: E10 shape files, E11 the geometry of a shape, E13 the generator; W12 and N12 remarks on shapes.
+//! Diagnostics of shapes and of what is made of them: E10 shape files, E11 the geometry of a shape, E13 and W13 the generator; W12 and N12 remarks on shapes.
 
 /// Hands its rows, behind those it is given, to the next table in the list.
 macro_rules! shape {
@@ -24,6 +24,13 @@ TooFewRows = "E1302", "too few rows";
 /// Wrong: a tube of radius 3 around a bend of radius 1.
 /// Right: a wider bend, or a thinner tube.
 SurfaceBroken = "E1303", "the surface cannot be covered";
+/// Stitches lean so much that a part turns by three quarters of a turn or more over its length.
+///
+/// `lean` says by how many stitches a column moves in each round of one maker, positive in working direction. Rarely is it
+/// more than a tenth. A pattern for a wrong lean comes out twisted.
+///
+/// Wrong: `--set lean=0.8` where a column moved by 0.8 stitches over 20 rounds. Right: `--set lean=0.04`.
+MuchLean = "W1306", "stitches lean much";
 /// There are no stitches where a branch is joined.
 ///
 /// Each first loop of a branch is worked into the nearest stitch of its parent; for a slit, a run of stitches of one

@@ -103,6 +103,7 @@ impl Printer<'_> {
                     Pair::Terms => "terms",
                     Pair::Lang => "lang",
                     Pair::Gauge => "gauge",
+                    Pair::Lean => "lean",
                     Pair::Yarn => "yarn",
                     Pair::Hook => "hook",
                 };

@@ -5,6 +5,7 @@ use super::conventions::{Conventions, Setting};
 use super::lex::At;
 use super::syntax::{Content, Header, Pair};
 use crate::diag::{Code, Diagnostic};
+use crate::ir::maker::MOST_LEAN;
 use crate::ir::{Gauge, Hand, Language, Maker, Terms};
 
 /// Declarations that become part of the program.
@@ -40,6 +41,13 @@ pub(super) fn read(
                 }
             }
             Header::Pair { key: Pair::Gauge, value } => heading.gauge = gauge(text(*value)).or(heading.gauge),
+            Header::Pair { key: Pair::Lean, value } => {
+                let lean: Option<f64> = text(*value).parse().ok();
+                match lean.filter(|lean| lean.abs() <= MOST_LEAN) {
+                    Some(lean) => heading.maker.lean = lean,
+                    None => wrong(*value, "stitches a round, from -1 to 1".to_owned()),
+                }
+            }
             Header::Convention { settings } => {
                 for (key, value) in settings {
                     if let Err(right) = conventions.set(text(*key), text(*value)) {

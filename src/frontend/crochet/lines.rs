@@ -331,6 +331,7 @@ const PAIRS: &[(&str, Pair)] = &[
     ("lang", Pair::Lang),
     ("language", Pair::Lang),
     ("gauge", Pair::Gauge),
+    ("lean", Pair::Lean),
     ("yarn", Pair::Yarn),
     ("hook", Pair::Hook),
 ];

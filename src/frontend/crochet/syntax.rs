@@ -76,6 +76,7 @@ pub(crate) enum Pair {
     Terms,
     Lang,
     Gauge,
+    Lean,
     Yarn,
     Hook,
 }

@@ -39,6 +39,8 @@ pub struct Prose {
     pub stuffing: &'static str,
     /// For whom a left-handed pattern is.
     pub left_handed: &'static str,
+    /// For whom a pattern is whose stitches lean.
+    pub lean: &'static str,
     /// The list of abbreviations.
     pub abbreviations: &'static str,
     /// What an increase is.
@@ -100,6 +102,7 @@ pub(super) static ENGLISH: Prose = Prose {
     needle: "a yarn needle",
     stuffing: "stuffing",
     left_handed: "For left-handed work: hold the hook in your left hand and work each round from left to right. Worked right-handed, the same words give the mirror image.",
+    lean: "Made for stitches that drift by {lean} stitches a round (minus: against the direction of work). If columns of yours stand straighter or lean otherwise, the shape comes out twisted.",
     abbreviations: "Abbreviations ({terms} terms): {list}.",
     inc: "increase: 2 {sc} in one stitch",
     dec: "decrease: 2 stitches worked together as one {sc}",
@@ -141,6 +144,7 @@ pub(super) static SPANISH: Prose = Prose {
     needle: "una aguja lanera",
     stuffing: "relleno",
     left_handed: "Para zurdos: sujeta la aguja con la mano izquierda y teje cada vuelta de izquierda a derecha. Tejido con la derecha, el mismo texto da la imagen reflejada.",
+    lean: "Hecho para puntos que se desplazan {lean} puntos por vuelta (menos: contra el sentido del trabajo). Si tus columnas se inclinan de otro modo, la forma sale torcida.",
     abbreviations: "Abreviaturas: {list}.",
     inc: "aumento: 2 {sc} en el mismo punto",
     dec: "disminución: 2 puntos tejidos juntos como un {sc}",
@@ -182,6 +186,7 @@ pub(super) static PORTUGUESE: Prose = Prose {
     needle: "uma agulha de tapeçaria",
     stuffing: "enchimento",
     left_handed: "Para canhotos: segure a agulha com a mão esquerda e trabalhe cada carreira da esquerda para a direita. Feito com a direita, o mesmo texto dá a imagem espelhada.",
+    lean: "Feito para pontos que se deslocam {lean} pontos por carreira (menos: contra o sentido do trabalho). Se as suas colunas se inclinam de outro modo, a forma sai torcida.",
     abbreviations: "Abreviações: {list}.",
     inc: "aumento: 2 {sc} no mesmo ponto",
     dec: "diminuição: 2 pontos fechados juntos como um {sc}",
@@ -223,6 +228,7 @@ pub(super) static FRENCH: Prose = Prose {
     needle: "une aiguille à laine",
     stuffing: "du rembourrage",
     left_handed: "Pour gauchers : tenez le crochet de la main gauche et travaillez chaque tour de gauche à droite. Fait de la main droite, le même texte donne l'image en miroir.",
+    lean: "Prévu pour des mailles qui dérivent de {lean} mailles par tour (moins : contre le sens du travail). Si vos colonnes penchent autrement, la forme sort vrillée.",
     abbreviations: "Abréviations : {list}.",
     inc: "augmentation : 2 {sc} dans la même maille",
     dec: "diminution : 2 mailles rabattues ensemble en une {sc}",
@@ -264,6 +270,7 @@ pub(super) static GERMAN: Prose = Prose {
     needle: "eine Wollnadel",
     stuffing: "Füllwatte",
     left_handed: "Für Linkshänder: die Nadel in der linken Hand halten und jede Runde von links nach rechts häkeln. Rechtshändig gehäkelt ergibt derselbe Text das Spiegelbild.",
+    lean: "Für Maschen, die je Runde um {lean} Maschen wandern (minus: gegen die Arbeitsrichtung). Stehen Ihre Maschensäulen anders, gerät die Form verdreht.",
     abbreviations: "Abkürzungen: {list}.",
     inc: "Zunahme: 2 {sc} in eine Masche",
     dec: "Abnahme: 2 Maschen als eine {sc} zusammen abmaschen",
@@ -305,6 +312,7 @@ pub(super) static NORWEGIAN: Prose = Prose {
     needle: "en stoppenål",
     stuffing: "vatt",
     left_handed: "For venstrehendte: hold nålen i venstre hånd og hekle hver omgang fra venstre mot høyre. Heklet med høyre hånd gir den samme teksten speilbildet.",
+    lean: "Laget for masker som vandrer {lean} masker per omgang (minus: mot arbeidsretningen). Står maskesøylene dine annerledes, blir formen vridd.",
     abbreviations: "Forkortelser: {list}.",
     inc: "økning: 2 {sc} i samme maske",
     dec: "felling: 2 masker heklet sammen til én {sc}",

@@ -64,10 +64,17 @@ pub fn lower(
     options: &Options,
     sink: &mut Sink<'_>,
 ) -> Option<Lowered> {
-    if program.maker.hand == Hand::Left {
-        let message =
-            format!("the pattern is for left-handed work, and `{}` knits its mirror image", machine.name);
-        let help = "a machine knows no hand: build it without `hand = left`";
+    if !program.maker.is_usual() {
+        let (message, help) = match program.maker.hand {
+            Hand::Left => (
+                format!("the pattern is for left-handed work, and `{}` knits its mirror image", machine.name),
+                "a machine knows no hand: build it without `hand = left`",
+            ),
+            Hand::Right => (
+                format!("the pattern is for stitches that lean, and those of `{}` do not", machine.name),
+                "build it without `lean`",
+            ),
+        };
         sink.push(Diagnostic::new(Finding::ForHands, message).help(help));
         return None;
     }

@@ -39,6 +39,9 @@ pub fn fit(program: &Verified<'_>, gauge: [f64; 2], sink: &Sink<'_>) -> Result<O
     if program.graphs.is_empty() {
         return Ok(None);
     }
+    if program.maker.lean != 0.0 {
+        return Err(Refused::Leans);
+    }
     let nets = nets(program, MAX_STITCHES);
     let (places, rest) = places(&nets, gauge, sink)?;
     let target: Vec<Vec<DVec3>> =
