@@ -11,7 +11,7 @@ use picot::ir::joins::pairs;
 use picot::ir::maker::mirrored;
 use picot::ir::verify::verify;
 use picot::ir::{Graph, Hand, Kind, PartId, Program};
-use picot::math::TAU;
+use picot::math::{TAU, sin_cos};
 use picot::preview::{Mesh, Places, Scene, View};
 use picot::shape::{Drift, ParametricSurface, Shape};
 use std::path::Path;
@@ -256,7 +256,7 @@ fn distance(surface: &dyn ParametricSurface, points: impl Iterator<Item = DVec3>
         sum += best.0;
         count += 1.0;
     }
-    (sum / count as f64).sqrt()
+    f64::sqrt(sum / count)
 }
 
 /// What becomes of stitches that stand as laid once each round has drifted by its lean: all that lies above a round turns
@@ -291,7 +291,7 @@ fn drifted(program: &Program, laid: &Graph, lean: f64) -> Vec<DVec3> {
     let turned = |node: &picot::ir::Node| {
         // The highest round comes first: its axis is as laid.
         rounds.iter().enumerate().rev().fold(node.position, |at, (k, (turns, center, axis))| {
-            let (sin, cos) = (TAU * turns * (node.tau - k as f64).clamp(0.0, 1.0)).sin_cos();
+            let (sin, cos) = sin_cos(TAU * turns * (node.tau - k as f64).clamp(0.0, 1.0));
             let arm = at - *center;
             *center + arm * cos + axis.cross(arm) * sin + *axis * (axis.dot(arm) * (1.0 - cos))
         })
@@ -371,7 +371,7 @@ fn every_shape_comes_out_as_well_with_stitches_that_lean() {
             leaning.level.missing
         );
         for (tube, graph) in shape.tubes.iter().zip(&program.graphs) {
-            for node in graph.nodes.iter().filter(|node| node.u > 0.0).take(tube_end(tube, graph)) {
+            for node in graph.nodes.iter().filter(|node| node.u > 0.0).take(surely_laid(graph)) {
                 let off = tube.surface.point(node.u, node.v).distance(node.position);
                 assert!(off < 0.01 * shape.gauge.width, "{name}, {}: {off}", tube.name);
             }
@@ -380,7 +380,7 @@ fn every_shape_comes_out_as_well_with_stitches_that_lean() {
 }
 
 /// Nodes that are surely laid on the surface: chains across a fork are not.
-fn tube_end(_: &picot::shape::Tube, graph: &Graph) -> usize {
+fn surely_laid(graph: &Graph) -> usize {
     let chain = graph.tiles.iter().position(|tile| tile.stitch.is_some_and(|stitch| stitch.kind == Kind::Ch));
     chain.map_or(usize::MAX, |tile| tile.min(graph.nodes.len()) * 3 / 4)
 }
