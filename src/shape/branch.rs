@@ -110,10 +110,16 @@ impl<S: ParametricSurface> Branch<S> {
         let mut places = Vec::with_capacity(AROUND);
         let mut feet = Vec::with_capacity(AROUND);
         let mut lost = 0;
+        let mut first = None;
         let length = super::length_along(&surface, 0.0, 0.0..1.0, 8).max(1e-9);
         for k in 0..AROUND {
             let v = k as f64 / AROUND as f64;
-            let mut foot = parent.foot(surface.point(0.0, v));
+            let begin = surface.point(0.0, v);
+            // Beside the foot of the line before, if it lies there.
+            let beside = first.map(|foot: Foot| parent.refine_to(begin, foot.u, foot.v, NEARLY));
+            let mut foot =
+                beside.filter(|foot| foot.distance.abs() < reach).unwrap_or_else(|| parent.foot(begin));
+            first = Some(foot);
             let next_to = |u: f64, foot: &Foot| parent.refine_to(surface.point(u, v), foot.u, foot.v, NEARLY);
             let (mut near, mut far) = (0.0, None);
             while near < 1.0 {

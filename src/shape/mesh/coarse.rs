@@ -68,6 +68,11 @@ impl Work {
             if self.fixed[v as usize] || self.around[v as usize].is_empty() {
                 continue;
             }
+            let at = self.points[v as usize];
+            let short = |u: &u32| *u != v && self.points[*u as usize].distance_squared(at) < length * length;
+            if !self.around[v as usize].iter().any(|f| self.faces[*f as usize].iter().any(short)) {
+                continue;
+            }
             let ring = self.ring(v);
             let mut near: SmallVec<[(f64, u32); 12]> = ring
                 .iter()

@@ -39,7 +39,7 @@ const APART: f64 = 1.5;
 const LEAP: f64 = 3.0;
 /// Tubes that are larger than this against their mesh do not run along it; and the samples by which that is seen.
 const MOST_AREA: f64 = 1.25;
-const SAMPLES: [u32; 2] = [16, 24];
+const SAMPLES: [u32; 2] = [8, 16];
 /// A limb leaves the surface that it grows from where it lies this far (stitches) from it.
 const LEAVES: f64 = 1.0;
 /// How far (stitches) the first row of a limb may lie off the rim in which it meets its parent.
@@ -421,14 +421,15 @@ fn grow(mut pieces: Vec<Piece>, limbs: Vec<limb::Limb>, plan: &Plan) -> Result<V
         let stack = stack.ok_or(Fault::NoRows { at })?;
         let base: Vec<DVec3> = (0..16).map(|k| stack.point(0.0, f64::from(k) / 16.0)).collect();
         let ends = stack.ends();
-        let (parent, solid) = pieces
-            .iter()
-            .map(|piece| Solid::new(&*piece.surface, piece.ends))
+        let solids = pieces.iter().map(|piece| Solid::new(&*piece.surface, piece.ends));
+        let off = |solid: &Solid<'_>| -> f64 {
+            // With one piece there is no choice.
+            let base = if pieces.len() > 1 { base.as_slice() } else { &[] };
+            base.iter().map(|point| solid.foot(*point).distance.abs()).sum()
+        };
+        let (parent, solid) = solids
             .enumerate()
-            .map(|(index, solid)| {
-                let off: f64 = base.iter().map(|point| solid.foot(*point).distance.abs()).sum();
-                (off, index, solid)
-            })
+            .map(|(index, solid)| (off(&solid), index, solid))
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .map(|(_, index, solid)| (index, solid))
             .ok_or(Fault::Fork { at })?;

@@ -63,6 +63,7 @@ pub(super) struct Ends {
     pub(super) others: Vec<Tip>,
     /// The ends of limbs that are to be cut off: they are on the mesh still, but nothing flows to them.
     pub(super) off: Vec<Tip>,
+    /// Empty where nobody has asked since limbs were cut off.
     pub(super) distance: Vec<f64>,
     /// Whether fields keep to the maximum principle at the cost of distortion.
     pub(super) strict: bool,
@@ -212,6 +213,9 @@ impl Ends {
             .min_by(|a, b| mesh.point(*a).distance(point).total_cmp(&mesh.point(*b).distance(point)))?;
         if self.others.iter().chain([&self.start]).any(|tip| tip.ring.contains(&vertex)) {
             return None;
+        }
+        if self.distance.is_empty() {
+            self.distance = mesh.distances(&self.start.ring, f64::INFINITY);
         }
         let mut tip = Tip { between: true, ..Tip::new(vec![vertex], false) };
         let far = self.others.iter().map(|tip| tip.at).fold(0.0, f64::max);

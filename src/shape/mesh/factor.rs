@@ -5,7 +5,7 @@ use super::soup::NONE;
 use glam::DVec3;
 
 /// Sets of at most this many unknowns are not divided.
-const SMALL: usize = 8;
+const SMALL: usize = 16;
 /// A set is cut across sides of at least this share of its longest one, into parts of at least one in so many.
 const NARROW: f64 = 0.4;
 const LEAST_SHARE: usize = 3;

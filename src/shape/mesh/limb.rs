@@ -7,7 +7,7 @@ use super::levels::Levels;
 use super::patch::Patch;
 use super::soup::{NONE, Soup, meeting};
 use super::way::Way;
-use super::{Fault, Mesh};
+use super::{Fault, Field, Mesh};
 use crate::math::atan2;
 use crate::shape::ring::Ring;
 use glam::DVec3;
@@ -177,7 +177,9 @@ impl Mesh {
             now = Some((severed.mesh, place));
         }
         let (mesh, _) = now.ok_or(Fault::Fork { at: self.middle(&ends.start) })?;
-        ends.distance = mesh.distances(&ends.start.ring, f64::INFINITY);
+        if plan.field == Field::Geodesic {
+            ends.distance = mesh.distances(&ends.start.ring, f64::INFINITY);
+        }
         Ok((mesh, ends))
     }
 
