@@ -33,10 +33,10 @@ pub(crate) struct Taste {
 }
 
 impl Taste {
-    /// Stitches that a row of `n` may have too few or too many before it is shaped. The total says how many are missing
-    /// from the whole row, so what waits is not lost: it comes with more of its kind, in one round instead of several.
-    fn dead_band(self, n: usize) -> f64 {
-        DEAD_BAND + self.ease * (WAITING_SHARE * n as f64).min(WAITING_MOST)
+    /// Stitches of a row of `n` that come in one round instead of several. The total of a row tells how many are missing
+    /// from it as a whole, so what waits is not lost, and what comes early is not made again.
+    fn waiting(self, n: usize) -> f64 {
+        self.ease * (WAITING_SHARE * n as f64).min(WAITING_MOST)
     }
 
     /// Price of a shaping.
@@ -56,9 +56,9 @@ impl Taste {
     }
 }
 
-/// Most stitches that wait with full ease: as a share of the row, and at all.
-const WAITING_SHARE: f64 = 0.06;
-const WAITING_MOST: f64 = 2.4;
+/// Stitches that come together with full ease: as a share of the row, and at most.
+const WAITING_SHARE: f64 = 0.09;
+const WAITING_MOST: f64 = 3.6;
 /// Stitches of a usual row, and how many times dearer shapings are in long ones with full ease.
 const USUAL_ROW: f64 = 15.0;
 const DEARER: f64 = 2.0;
@@ -181,10 +181,10 @@ impl Staircase {
             sum += gap - 1.0;
             sum
         }));
-        let band = taste.dead_band(gaps.len());
-        // What has waited is shaped away whole.
-        let missing = if sum.abs() - band < 0.5 { 0.0 } else { sum.abs() - DEAD_BAND };
-        let goal = missing.max(0.0).round().copysign(sum);
+        let early = 0.5 * taste.waiting(gaps.len());
+        let missing = sum.abs() - DEAD_BAND;
+        // Half of what may wait has waited; the other half comes early, so that rows are right on average.
+        let goal = if missing < 0.5 + early { 0.0 } else { (missing + early).round().copysign(sum) };
         let slope = (sum - goal) / gaps.len().max(1) as f64;
         for (i, s) in self.curve.iter_mut().enumerate() {
             *s -= slope * (i as f64 + 1.0);

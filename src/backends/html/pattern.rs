@@ -79,7 +79,7 @@ fn need(line: &Line, out: &mut String) {
     let (title, rest) = text.split_once(": ").unwrap_or(("", text));
     match (line, title) {
         // The page shows the name and has its own reader.
-        (Line::Code(_), "title" | "convention") => {}
+        (Line::Code(_), "title" | "convention" | "lean") => {}
         (Line::Code(_), "terms") => {
             let _ = writeln!(out, "<p><b>Terms</b> {}</p>", Escaped(&rest.to_uppercase()));
         }
