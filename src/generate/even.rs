@@ -58,9 +58,7 @@ impl Row<'_> {
         let step = f64::from(self.goal.signum());
         let (mut cost, mut level, mut from) = (0.0, 0.0, 0);
         for place in places.iter() {
-            if !allowed(kind, 0, self.cooldown, self.below, place)
-                || (kind == Shaping::Dec && self.marker == Some(place))
-            {
+            if !allowed(kind, self.below, place) || (kind == Shaping::Dec && self.marker == Some(place)) {
                 return None;
             }
             cost += sums.off(from, place, level);

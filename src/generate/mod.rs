@@ -11,6 +11,7 @@ mod first_row;
 mod marker;
 mod options;
 mod paper;
+mod patches;
 mod relax;
 mod rows;
 mod score;
@@ -31,11 +32,13 @@ use crate::shape::{
     Attachment, Drift, End, Joint, Mirrored, ParametricSurface, Tube, Twisted, area, is_revolution,
 };
 use glam::DVec3;
+use patches::Patches;
 use relax::{Effort, Ends, Mark, Relaxer};
 use rows::Rows;
 use seam::Turned;
 use sheet::{Foot, Sheet};
 use std::borrow::Cow;
+use tries::Judge;
 use weave::{Outcome, Weaver};
 
 /// Nodes may slide this far over an open end while they settle.
@@ -76,13 +79,11 @@ fn lay(
     options: &Options,
     sink: &mut Sink<'_>,
 ) -> Option<Graph> {
-    let fail = |sink: &mut Sink<'_>, code, message: String, help: &str| {
-        sink.push(Diagnostic::new(code, message).in_round(&tube.name, None).help(help));
-        None
-    };
     if let Some((name, right)) = options.fault() {
         let message = format!("the option `{name}` is out of range");
-        return fail(sink, Code::OptionOutOfRange, message, &format!("give it a value {right}"));
+        let diagnostic = Diagnostic::new(Code::OptionOutOfRange, message).in_round(&tube.name, None);
+        sink.push(diagnostic.help(format!("give it a value {right}")));
+        return None;
     }
     let options = &options.resolved();
     // What the left hand works comes out mirrored, so its pattern is made for the mirror image.
@@ -99,14 +100,44 @@ fn lay(
     if let Some(drift) = &drift {
         warn_of(drift.turns(1.0), &tube.name, sink);
     }
+    let graph = lay_on(target, tube, loops.as_deref(), gauge, options, sink)?;
+    let graph = match &drift {
+        Some(drift) => drift.come_out(graph),
+        None => graph,
+    };
+    Some(match hand {
+        Hand::Right => graph,
+        Hand::Left => graph.mirrored(),
+    })
+}
+
+/// Lays the stitches of a tube on `exact`: its surface, or what becomes of that for this maker.
+fn lay_on(
+    exact: &dyn ParametricSurface,
+    tube: &Tube,
+    loops: Option<&[DVec3]>,
+    gauge: &Gauge,
+    options: &Options,
+    sink: &mut Sink<'_>,
+) -> Option<Graph> {
+    let fail = |sink: &mut Sink<'_>, code, message: String, help: &str| {
+        sink.push(Diagnostic::new(code, message).in_round(&tube.name, None).help(help));
+        None
+    };
     // A branch in a slit begins at an end of it, with as many loops below as above.
     let slit = matches!(tube.attachment, Some(Attachment { joint: Joint::Opening, .. }));
-    let picked_up = loops.map(|loops| first_row::picked_up(target, &loops));
-    let turned = match (&picked_up, hand) {
+    let even = options.symmetric && loops.is_none() && !slit && is_revolution(exact);
+    let patches = (!even && options.tries > 1).then(|| Patches::new(exact, gauge)).flatten();
+    let picked_up = loops.map(|loops| first_row::picked_up(exact, loops));
+    let target: &dyn ParametricSurface = match &patches {
+        Some(patches) => patches,
+        None => exact,
+    };
+    let turned = match (&picked_up, options.maker().hand) {
         (Some((by, _)), _) => Turned { surface: target, by: *by },
         (None, Hand::Right) if slit => Turned { surface: target, by: 0.0 },
         // Rounds of the left hand come to the other end of the slit first.
-        (None, Hand::Left) if slit => Turned { surface: target, by: first_row::opposite(target) },
+        (None, Hand::Left) if slit => Turned { surface: target, by: first_row::opposite(exact) },
         (None, _) => Turned::to_slowest_side(target),
     };
     let fixed = slit || picked_up.is_some();
@@ -138,10 +169,10 @@ fn lay(
     };
     sink.stage("stitches");
     let most = (3.0 * expected) as usize + 10_000;
-    let laid = Ground { slit, first, ..Ground::new(surface, ends, &rows, gauge, options) }.lay_evenly(sink);
+    let laid = if even { Ground::new(surface, ends, &rows, gauge, options).lay_evenly(sink) } else { None };
     let laid = laid.map(|(sheet, start)| Laid { sheet, start, turn: turned.by, lifted: None });
-    let Some(Laid { sheet, start, turn, lifted }) = laid.or_else(|| {
-        tries::best(options, expected, first.is_some(), |options, turn| {
+    let Some(Laid { mut sheet, start, turn, lifted }) = laid.or_else(|| {
+        tries::best(options, expected, first.is_some(), |options, turn, judge| {
             // Where the place of the first row is given, its height is varied.
             let lifted =
                 first.and_then(|_| Rows::new(surface, [leads[0] + LIFT * turn, leads[1]], gauge.height));
@@ -151,7 +182,7 @@ fn lay(
             for foot in first.unwrap_or_default() {
                 ground.range[0] = ground.range[0].min(foot.u);
             }
-            let (sheet, start) = ground.weave(most, sink)?;
+            let (sheet, start) = ground.weave(most, judge, sink)?;
             Some(Laid { sheet, start, turn: turned.by, lifted })
         })
     }) else {
@@ -164,19 +195,16 @@ fn lay(
             format!("a stitch of {:.2} mm height leaves no round to work on this tube", gauge.height);
         return fail(sink, Code::TooFewRows, message, "use a smaller stitch or a longer shape");
     }
+    if patches.is_some() {
+        for ((point, u), v) in sheet.point.iter_mut().zip(&sheet.u).zip(&sheet.v) {
+            *point = exact.point(*u, v + turn);
+        }
+    }
     if sheet.point.iter().any(|p| !p.is_finite()) {
         return fail(sink, Code::SurfaceBroken, "stitches ran off this surface".into(), GENTLER);
     }
     let poles = Ground::new(surface, ends, &rows, gauge, options).poles;
-    let graph = finish::graph(&sheet, lifted.as_ref().unwrap_or(&rows), start, poles, turn);
-    let graph = match &drift {
-        Some(drift) => drift.come_out(graph),
-        None => graph,
-    };
-    Some(match hand {
-        Hand::Right => graph,
-        Hand::Left => graph.mirrored(),
-    })
+    Some(finish::graph(&sheet, lifted.as_ref().unwrap_or(&rows), start, poles, turn))
 }
 
 /// Warns of a drift that no one would have overlooked.
@@ -236,9 +264,6 @@ impl<'s> Ground<'s> {
     /// Even repeats on a surface of revolution, settled; with the stitches of the first row. `None` elsewhere.
     fn lay_evenly(&self, sink: &Sink<'_>) -> Option<(Sheet, usize)> {
         let Self { surface, rows, options, .. } = *self;
-        if !options.symmetric || self.slit || self.first.is_some() || !is_revolution(surface) {
-            return None;
-        }
         let rounds = rows.count as u32;
         let girths: Vec<f64> =
             (0..rounds).map(|k| first_row::turn_length(surface, rows, k) / self.gauge.width).collect();
@@ -268,7 +293,7 @@ impl<'s> Ground<'s> {
     }
 
     /// Row by row, for any surface; with the stitches of the first row. `None` when the rows run away.
-    fn weave(&self, most: usize, sink: &Sink<'_>) -> Option<(Sheet, usize)> {
+    fn weave(&self, most: usize, judge: Judge, sink: &Sink<'_>) -> Option<(Sheet, usize)> {
         let Self { surface, rows, options, .. } = *self;
         let mut sheet = Sheet::new(self.gauge);
         if let Some(first) = self.first {
@@ -283,9 +308,9 @@ impl<'s> Ground<'s> {
         }
         let start = sheet.len();
         let mut weaver = Weaver::new(surface, rows, options, sheet, self.poles[0], self.range, most);
-        match weaver.run(|done, total| sink.step(done, total)) {
+        match weaver.run(judge, |done, total| sink.step(done, total)) {
             Outcome::Done => Some((weaver.sheet, start)),
-            Outcome::Runaway => None,
+            Outcome::Runaway | Outcome::Outdone => None,
         }
     }
 }

@@ -24,6 +24,9 @@ const LEAST: usize = 4;
 /// Steps of the polyline along which the way up is measured.
 const STEPS: u32 = 3;
 
+/// Added to missing heights.
+pub(super) const EAGER: f64 = 0.15;
+
 /// Options under which the generator follows the paper.
 pub(super) fn options(base: &Options) -> Options {
     Options {

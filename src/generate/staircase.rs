@@ -69,9 +69,11 @@ const EVEN: f64 = 0.6;
 /// Levels on either side of the curve that are tried.
 const REACH: i32 = 4;
 const LEVELS: usize = 2 * REACH as usize + 1;
+/// What a way may cost more than the cheapest up to the same base: more than a few shapings that bring both together.
+const HOPELESS: f64 = 5.0;
 /// Longest distance between shapings, in bases.
 const COOLDOWN: usize = 4;
-const STATES: usize = LEVELS * (COOLDOWN + 1);
+const WAITS: usize = COOLDOWN + 1;
 
 /// The plan of one row with its buffers.
 #[derive(Debug, Default)]
@@ -82,7 +84,7 @@ pub(crate) struct Staircase {
     pub rest: Vec<f64>,
     curve: Vec<f64>,
     /// How each state was reached: shaping in the low two bits, cooldown before in the rest.
-    reached: Vec<[u8; STATES]>,
+    reached: Vec<[[u8; WAITS]; LEVELS]>,
 }
 
 impl Staircase {
@@ -97,58 +99,69 @@ impl Staircase {
         // Even where every base is shaped, a decrease needs a plain stitch to join.
         let rested = cooldown.max(1);
         let center = |i: usize| self.curve[i].round() as i32;
-        let mut cost = [f64::MAX; STATES];
-        let mut next = [f64::MAX; STATES];
+        let mut cost = [[f64::MAX; WAITS]; LEVELS];
+        cost[REACH as usize][0] = 0.0;
         self.reached.clear();
-        self.reached.resize(n, [0; STATES]);
-        let start = REACH as usize;
-        cost[start * (COOLDOWN + 1)] = 0.0;
+        self.reached.resize(n, [[0; WAITS]; LEVELS]);
         let mut middle = 0;
+        let mut cheapest = 0.0;
+        let hopeless_by = HOPELESS.max(3.0 * full);
+        // Levels that still have a way worth following.
+        let mut live = [REACH as usize; 2];
         for i in 0..n {
-            next.fill(f64::MAX);
+            let mut next = [[f64::MAX; WAITS]; LEVELS];
             let here = center(i);
+            let shift = middle - here;
+            let hopeless = cheapest + hopeless_by;
+            cheapest = f64::MAX;
             let price = full + taste.stacking(below, i);
-            for level in 0..LEVELS {
-                let q = middle + level as i32 - REACH;
-                for wait in 0..=rested {
-                    let so_far = cost[level * (COOLDOWN + 1) + wait];
-                    if so_far == f64::MAX {
+            let may_inc = i > 0 && allowed(Shaping::Inc, below, i);
+            let may_dec = i > 0 && allowed(Shaping::Dec, below, i) && taste.marker != Some(i);
+            let mut reach = [LEVELS, 0];
+            let levels = cost.iter().enumerate().take(live[1] + 1).skip(live[0]);
+            for (level, waits) in levels {
+                let to = level as i32 + shift;
+                let off = self.curve[i] - f64::from(here + to - REACH);
+                for (wait, &so_far) in waits.iter().enumerate().take(rested + 1) {
+                    if so_far > hopeless {
                         continue;
                     }
-                    for (shaping, step) in [(Shaping::Plain, 0), (Shaping::Inc, 1), (Shaping::Dec, -1)] {
-                        if shaping != Shaping::Plain
-                            && (i == 0 || !allowed(shaping, wait, cooldown, below, i))
-                        {
-                            continue;
-                        }
-                        if shaping == Shaping::Dec && taste.marker == Some(i) {
-                            continue;
-                        }
-                        let to = q + step - here + REACH;
+                    let mut reaches = |to: i32, wait_after: usize, total: f64, shaping: Shaping| {
                         if !(0..LEVELS as i32).contains(&to) {
-                            continue;
+                            return;
                         }
-                        let (wait_after, paid) = if shaping == Shaping::Plain {
-                            (wait.saturating_sub(1), 0.0)
-                        } else {
-                            (rested, price)
-                        };
-                        let off = self.curve[i] - f64::from(q + step);
-                        let total = so_far + off * off + paid;
-                        let state = to as usize * (COOLDOWN + 1) + wait_after;
-                        if total < next[state] {
-                            next[state] = total;
-                            self.reached[i][state] = shaping as u8 | (wait as u8) << 2;
+                        let to = to as usize;
+                        if total < next[to][wait_after] {
+                            next[to][wait_after] = total;
+                            self.reached[i][to][wait_after] = shaping as u8 | (wait as u8) << 2;
+                            cheapest = cheapest.min(total);
+                            reach = [reach[0].min(to), reach[1].max(to)];
                         }
+                    };
+                    reaches(to, wait.saturating_sub(1), so_far + off * off, Shaping::Plain);
+                    if may_inc && (wait == 0 || cooldown == 0) {
+                        let off = off - 1.0;
+                        reaches(to + 1, rested, so_far + off * off + price, Shaping::Inc);
+                    }
+                    if may_dec && wait == 0 {
+                        let off = off + 1.0;
+                        reaches(to - 1, rested, so_far + off * off + price, Shaping::Dec);
                     }
                 }
             }
-            std::mem::swap(&mut cost, &mut next);
+            live = reach;
+            cost = next;
             middle = here;
+            if live[0] > live[1] {
+                // The curve jumps by more than the levels reach: all ways are lost, and the row goes on from there.
+                live = [REACH as usize; 2];
+                cost[REACH as usize][0] = 0.0;
+                cheapest = 0.0;
+            }
         }
         self.trace_back(&cost, n);
         if taste.ease > 0.0 && goal.abs() >= 2 {
-            let least = cost.iter().copied().fold(f64::MAX, f64::min);
+            let least = cost.iter().flatten().copied().fold(f64::MAX, f64::min);
             let most = least + taste.evenness(n);
             let row = even::Row {
                 curve: &self.curve,
@@ -192,22 +205,24 @@ impl Staircase {
         goal as i32
     }
 
-    fn trace_back(&mut self, cost: &[f64; STATES], n: usize) {
+    fn trace_back(&mut self, cost: &[[f64; WAITS]; LEVELS], n: usize) {
         self.plan.clear();
         self.plan.resize(n, Shaping::Plain);
         self.rest.clear();
         self.rest.resize(n, 0.0);
-        let mut state = 0;
-        for (k, c) in cost.iter().enumerate() {
-            if *c < cost[state] {
-                state = k;
+        let mut state = (0, 0);
+        for (level, waits) in cost.iter().enumerate() {
+            for (wait, c) in waits.iter().enumerate() {
+                if *c < cost[state.0][state.1] {
+                    state = (level, wait);
+                }
             }
         }
         for i in (0..n).rev() {
             let here = self.curve[i].round() as i32;
-            let q = here + (state / (COOLDOWN + 1)) as i32 - REACH;
+            let q = here + state.0 as i32 - REACH;
             self.rest[i] = self.curve[i] - f64::from(q);
-            let reached = self.reached[i][state];
+            let reached = self.reached[i][state.0][state.1];
             let (shaping, step) = match reached & 3 {
                 1 => (Shaping::Inc, 1),
                 2 => (Shaping::Dec, -1),
@@ -216,7 +231,7 @@ impl Staircase {
             self.plan[i] = shaping;
             let before = if i == 0 { 0 } else { self.curve[i - 1].round() as i32 };
             let level = (q - step - before + REACH).clamp(0, LEVELS as i32 - 1);
-            state = level as usize * (COOLDOWN + 1) + usize::from(reached >> 2);
+            state = (level as usize, usize::from(reached >> 2).min(COOLDOWN));
         }
     }
 }
@@ -227,12 +242,12 @@ pub(super) fn beside(below: &[Shaped], i: usize) -> bool {
     near.is_some_and(|near| near.iter().any(|shaped| *shaped != Shaped::No))
 }
 
-/// A shaping may stand at base `i`, and does not undo the row below.
-pub(super) fn allowed(shaping: Shaping, wait: usize, cooldown: usize, below: &[Shaped], i: usize) -> bool {
+/// The row below lets a shaping stand at base `i`: it does not undo what is there.
+pub(super) fn allowed(shaping: Shaping, below: &[Shaped], i: usize) -> bool {
     match shaping {
         Shaping::Plain => true,
-        Shaping::Inc => (wait == 0 || cooldown == 0) && below[i] != Shaped::Dec,
-        Shaping::Dec => wait == 0 && below[i] != Shaped::Inc && below[i - 1] != Shaped::Inc,
+        Shaping::Inc => below[i] != Shaped::Dec,
+        Shaping::Dec => below[i] != Shaped::Inc && below[i - 1] != Shaped::Inc,
     }
 }
 

@@ -8,12 +8,23 @@ use super::score::Score;
 /// Parts of more stitches get one try, or, where it has inverted tiles, a few: the luck of single shapings evens out there.
 const MOST_STITCHES: f64 = 5_000.0;
 const MOST_RESCUED: f64 = 50_000.0;
-/// A score that needs no second try.
-const GOOD: f64 = 1.45;
+/// Scores that need no second try, and no third.
+const GOOD: [f64; 2] = [1.45, 2.1];
+/// A try whose score is so much worse than the best before its rows have settled is given up.
+const BAR: f64 = 0.1;
 /// Further tries for parts on which all have inverted tiles.
 const RESCUES: usize = 8;
 /// Sweeps of a rescue: inverted tiles open slowly.
 const RESCUE_SWEEPS: u32 = 3;
+
+/// What a try is held to.
+#[derive(Clone, Copy)]
+pub(super) struct Judge {
+    /// The score after the first sweeps over the whole over which it is given up.
+    pub bar: f64,
+    /// The last turn is pulled level, at the price of tiles that it may press flat.
+    pub level: bool,
+}
 
 /// How a try differs from the first: where its helix begins, in turns from there; the factor of the activation threshold,
 /// and that of the tolerance; the longest short row as a share of that asked for.
@@ -44,16 +55,17 @@ const CHANGES: [Change; 12] = [
 ];
 
 /// The options of a try, and how far around the tube its helix begins.
-fn variant(base: &Options, index: usize) -> (Options, f64) {
+fn variant(base: &Options, index: usize) -> (Options, f64, bool) {
     let change = &CHANGES[index % CHANGES.len()];
     let mut options = base.clone();
     options.activation *= change.activation;
     options.tolerance = (options.tolerance * change.tolerance).min(options.activation);
     options.max_short_row *= change.longest;
-    if index >= base.tries as usize {
+    let rescue = index >= base.tries as usize;
+    if rescue {
         options.sweeps = options.sweeps.saturating_mul(RESCUE_SWEEPS);
     }
-    (options, change.turn)
+    (options, change.turn, rescue)
 }
 
 /// The best of the tries that `lay` makes; `None` when none comes to an end. Where the first row is `given`, all tries
@@ -62,7 +74,7 @@ pub(super) fn best(
     options: &Options,
     expected: f64,
     given: bool,
-    mut lay: impl FnMut(&Options, f64) -> Option<Laid>,
+    mut lay: impl FnMut(&Options, f64, Judge) -> Option<Laid>,
 ) -> Option<Laid> {
     let tries = if expected > MOST_STITCHES { 1 } else { options.tries as usize };
     let most = if options.tries > 1 && expected <= MOST_RESCUED { tries + RESCUES } else { tries };
@@ -70,14 +82,18 @@ pub(super) fn best(
     for index in 0..most {
         let enough = match index < tries {
             true if given => 0.0,
-            true => GOOD,
+            true => GOOD[usize::from(index > 1)],
             false => f64::MAX,
         };
         if best.as_ref().is_some_and(|(score, _)| score.inverted == 0 && score.total <= enough) {
             break;
         }
-        let (options, turn) = variant(options, index);
-        let Some(laid) = lay(&options, turn) else { continue };
+        let (options, turn, rescue) = variant(options, index);
+        let bar = match &best {
+            Some((score, _)) if score.inverted == 0 => score.total + BAR,
+            _ => f64::INFINITY,
+        };
+        let Some(laid) = lay(&options, turn, Judge { bar, level: !rescue }) else { continue };
         let score = Score::of(&laid.sheet).with_words(&laid.sheet, options.ease());
         if best.as_ref().is_none_or(|(so_far, _)| so_far.total.is_nan() || score.total < so_far.total - 1e-9)
         {

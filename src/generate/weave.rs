@@ -8,9 +8,11 @@ use super::marker::Marker;
 use super::options::Options;
 use super::relax::{Effort, Ends, Mark, Relaxer};
 use super::rows::{Rows, row_speed};
+use super::score::Score;
 use super::sheet::{Edge, EdgeKind, Foot, Quad, Shaped, Sheet, ShortRow, TileKind, Work};
 use super::short_rows::{GAP, Planner, Rules};
 use super::staircase::{Shaping, Staircase, Taste};
+use super::tries::Judge;
 use crate::ir::{NodeId, Stitch};
 use crate::math;
 use crate::shape::ParametricSurface;
@@ -20,14 +22,14 @@ use std::ops::Range;
 /// Neighbors on either side that give the course direction at a base, at most; never more than a sixth of a turn away.
 const REACH: usize = 3;
 /// How far a stitch stretches or shrinks toward the level of its neighbors, per stitch height of difference, and at most.
-const LEVELING: f64 = 0.7;
+const LEVELING: f64 = 0.83;
 const LEVELING_MOST: f64 = 0.3;
 /// Missing height by which the ring's start must lag behind its most advanced place to move the seam there.
 const SEAM: f64 = 0.4;
 /// Added to missing heights before short rows are planned: it is better to be a little early.
-const EAGER: f64 = 0.15;
+const EAGER: f64 = 0.284;
 /// Weight of square tiles while rows settle.
-const WINDOW_SQUARENESS: f64 = 0.5;
+const WINDOW_SQUARENESS: f64 = 0.675;
 /// Price of a short-row end right over one of the row before, its reach in stitches, and how fast it fades per batch.
 const STACKED_END: f64 = 1.5;
 const STACKED_REACH: f64 = 3.0;
@@ -41,6 +43,8 @@ const FEWER_ENDS: f64 = 1.0;
 /// Fewest loops of a batch that short rows may lie on.
 const LEAST_RING: usize = 9;
 
+/// Sweeps over the whole after which a try is judged.
+const FIRST_SWEEPS: u32 = 4;
 /// Most short rows over each other in one round.
 const MOST_NESTED: u32 = 6;
 
@@ -59,6 +63,8 @@ pub(crate) enum Outcome {
     Done,
     /// More nodes than any sensible count for this surface: it folds, or the gauge makes no sense here.
     Runaway,
+    /// The first sweeps over the whole leave it worse than asked for.
+    Outdone,
 }
 
 pub(crate) struct Weaver<'s> {
@@ -130,7 +136,9 @@ impl<'s> Weaver<'s> {
     }
 
     /// Weaves all rows and settles the whole. `progress` hears of rows done.
-    pub(crate) fn run(&mut self, mut progress: impl FnMut(u64, u64)) -> Outcome {
+    ///
+    /// When its score is over the bar after the first sweeps it is given up.
+    pub(crate) fn run(&mut self, judge: Judge, mut progress: impl FnMut(u64, u64)) -> Outcome {
         loop {
             let length = self.batch_length();
             self.part_batch = length < self.ring.len();
@@ -162,7 +170,15 @@ impl<'s> Weaver<'s> {
                 break;
             }
         }
-        self.settle_all();
+        let first = if judge.bar < f64::INFINITY { self.options.sweeps.min(FIRST_SWEEPS) } else { 0 };
+        if first > 0 {
+            self.settle_all(first, judge.level);
+            let score = Score::of(&self.sheet).with_words(&self.sheet, self.options.ease());
+            if score.total > judge.bar {
+                return Outcome::Outdone;
+            }
+        }
+        self.settle_all(self.options.sweeps - first, judge.level);
         Outcome::Done
     }
 
@@ -343,11 +359,12 @@ impl<'s> Weaver<'s> {
         self.relaxer.relax(self.surface, &mut self.sheet, mark, exact, effort, ends);
     }
 
-    fn settle_all(&mut self) {
+    fn settle_all(&mut self, sweeps: u32, level: bool) {
         let top = self.ring.iter().copied().min().unwrap_or(0) as usize;
         let mark = self.free(Mark::default());
-        let effort = Effort { sweeps: self.options.sweeps, squareness: self.options.squareness };
-        let ends = Ends { level: Some((self.rows, top)), ..self.ends() };
+        let effort = Effort { sweeps, squareness: self.options.squareness };
+        let level = Some((self.rows, if level { top } else { usize::MAX }));
+        let ends = Ends { level, ..self.ends() };
         self.relaxer.relax(self.surface, &mut self.sheet, mark, 0, effort, ends);
     }
 
@@ -389,7 +406,8 @@ impl<'s> Weaver<'s> {
     fn raise(&mut self, stretch: &Stretch, around: usize, raised: &mut Vec<(Stretch, isize)>) {
         let tops = &stretch.tops;
         let size = around as f64;
-        let missing: Vec<f64> = tops.iter().map(|id| self.missing_at(*id) + EAGER).collect();
+        let eager = if self.options.paper { super::paper::EAGER } else { EAGER };
+        let missing: Vec<f64> = tops.iter().map(|id| self.missing_at(*id) + eager).collect();
         let extra: Vec<f64> = tops.iter().map(|id| self.stacked_price(*id, size)).collect();
         let least = (self.options.min_short_row as usize).min((0.3 * size) as usize).max(3);
         let greatest = (self.options.max_short_row * size) as usize;

@@ -29,7 +29,7 @@ fn words_get_fewer_and_the_shape_stays() {
             equal[index] += read.equal_rounds;
             let measure = picot::measure(&shape, &program);
             length[index] += measure.length_error.chord.mean_abs;
-            assert!(measure.length_error.chord.mean_abs < 0.08, "{} at {value}", shape.name);
+            assert!(measure.length_error.chord.mean_abs < 0.09, "{} at {value}", shape.name);
             assert!(measure.inverted_tiles <= 2, "{} at {value}: {}", shape.name, measure.inverted_tiles);
         }
     }

@@ -1,0 +1,216 @@
+//! The few pulls that do not lie between neighboring wales: steps and other lone edges, turns, narrow tiles, the magic
+//! ring and the level of the last turn.
+
+use super::{Ends, Level, Relaxer, STEP_REST, STEP_WEIGHT, Scales, Span, TINY};
+use crate::generate::sheet::{EdgeKind, Quad, Sheet, TileKind};
+use glam::{DVec3, Vec3A, Vec4, Vec4Swizzles};
+
+/// In the final sweeps a tile that has less than this share of its area left is pushed open, with this weight.
+const NARROW: f32 = 0.3;
+const NARROW_WEIGHT: f32 = 2.0;
+
+/// Pull of the last turn of tops toward its level: its weight, how much higher than the helix that lies, how far a top may
+/// be off it for nothing, how much farther the pull grows, in this slack, and from where on it is no use, in rows.
+const LEVEL_WEIGHT: f64 = 2.5;
+const LEVEL_SHIFT: f64 = 0.15;
+const LEVEL_SLACK: f64 = 0.3;
+const LEVEL_CAP: f32 = 1.2;
+const LEVEL_FAR: f64 = 1.0;
+
+/// A tile that has little of its area left.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Narrow {
+    corners: [usize; 4],
+    /// The surface's normal there, over twice the area of a stitch.
+    normal: Vec3A,
+}
+
+impl Narrow {
+    /// The share of its area that the tile has, and the derivatives of that by its diagonals.
+    fn share(&self, point: &[Vec4]) -> (f32, Vec3A, Vec3A) {
+        let [b0, b1, t0, t1] = self.corners.map(|i| Vec3A::from_vec4(point[i]));
+        let (rising, falling) = (t1 - b0, t0 - b1);
+        let (by_rising, by_falling) = (falling.cross(self.normal), self.normal.cross(rising));
+        (dot(rising, by_rising), by_rising, by_falling)
+    }
+}
+
+#[inline]
+fn dot(a: Vec3A, b: Vec3A) -> f32 {
+    // In this order on every machine; the vector's own product adds in another one on some.
+    let product = a * b;
+    product.x + product.y + product.z
+}
+
+#[inline]
+fn vec4(a: Vec3A) -> Vec4 {
+    a.extend(0.0)
+}
+
+/// Adds `weight` times the outer product of a vector with itself.
+fn add_outer(to: &mut [Vec4; 2], a: Vec3A, weight: f32) {
+    let a = vec4(a);
+    let w = a * weight;
+    to[0] += a * w;
+    to[1] += a.yzxw() * w.zxyw();
+}
+
+impl Relaxer {
+    /// What loose edges and turns add to the matrices; and the narrow tiles and the level nodes, for the next few sweeps.
+    pub(super) fn stiffen_loose(&mut self, sheet: &Sheet, span: &Span, scales: &Scales, ends: &Ends<'_>) {
+        let point = |i: usize| Vec3A::from_vec4(self.point[i]);
+        for edge in &self.loose.edges {
+            let (a, b) = (edge.a as usize - span.low, edge.b as usize - span.low);
+            let (inverse, weight) = rest(edge.kind, scales);
+            let d = point(b) - point(a);
+            let weight = 2.0 * weight * inverse * inverse / dot(d, d).max(TINY);
+            for i in [a, b] {
+                add_outer(&mut self.stiffness[i], d, weight);
+            }
+        }
+        for quad in &self.loose.turns {
+            let at = quad.corners.map(|id| id as usize - span.low);
+            let (_, slopes) = turn(quad, at.map(point), scales);
+            for (i, slope) in at.into_iter().zip(slopes) {
+                add_outer(&mut self.stiffness[i], slope, 4.0 * scales.tile(quad.kind));
+            }
+        }
+        self.narrow.clear();
+        self.level.clear();
+        if let Some((rows, top)) = ends.level {
+            let unit = 0.5 / (scales.width * scales.height);
+            for corners in self.columns.tiles() {
+                let [b0, b1, t0, t1] = corners.map(|id| id as usize);
+                let id = b0;
+                if b0 == b1 || t0 == t1 || id < span.first {
+                    continue;
+                }
+                let corners = [b0, b1, t0, t1].map(|id| id - span.low);
+                let normal = sheet.dv[id].cross(sheet.du[id]).normalize_or_zero().as_vec3a() * unit;
+                let tile = Narrow { corners, normal };
+                let (share, by_rising, by_falling) = tile.share(&self.point);
+                if share < 2.0 * NARROW {
+                    let slopes = [by_rising, by_falling, by_falling, by_rising];
+                    for (i, slope) in corners.into_iter().zip(slopes) {
+                        add_outer(&mut self.stiffness[i], slope, 4.0 * NARROW_WEIGHT);
+                    }
+                    self.narrow.push(tile);
+                }
+            }
+            for i in top.max(span.first)..sheet.len() {
+                if !ends.pulls_level(sheet, i) {
+                    continue;
+                }
+                if (rows.tau(sheet.u[i]) - sheet.v[i]).abs() > LEVEL_FAR {
+                    continue;
+                }
+                let (du, dv) = (sheet.du[i], sheet.dv[i]);
+                // The matrix takes the whole weight along u; that it also takes some across is no harm.
+                let weight = LEVEL_WEIGHT / sheet.height.powi(2);
+                add_outer(
+                    &mut self.stiffness[i - span.low],
+                    du.normalize_or_zero().as_vec3a(),
+                    weight as f32,
+                );
+                let across = du - dv * (du.dot(dv) / dv.length_squared().max(1e-30));
+                let dual = across / across.length_squared().max(1e-30);
+                let slack = rows.at(sheet.v[i] + LEVEL_SLACK) - rows.at(sheet.v[i]);
+                self.level.push(Level {
+                    slack: slack as f32,
+                    node: i - span.first,
+                    dual: (dual * (weight * du.length_squared())).as_vec3().extend(0.0),
+                    way: (rows.at(sheet.v[i] + LEVEL_SHIFT) - sheet.u[i]) as f32,
+                });
+            }
+        }
+        if let Some((pole, count)) = ring(span, ends) {
+            for i in span.fringe()..span.fringe() + count {
+                let d = Vec3A::from_vec4(self.point[i] - pole);
+                let weight = 1.0 / (scales.height * scales.height * dot(d, d).max(TINY));
+                add_outer(&mut self.stiffness[i], d, weight);
+            }
+        }
+    }
+
+    /// Their pulls.
+    pub(super) fn pull_loose(&mut self, span: &Span, scales: &Scales, ends: &Ends<'_>) {
+        let (points, gradient) = (&self.point[..], &mut self.gradient[..]);
+        let point = |i: usize| Vec3A::from_vec4(points[i]);
+        for edge in &self.loose.edges {
+            let (a, b) = (edge.a as usize - span.low, edge.b as usize - span.low);
+            let (inverse, weight) = rest(edge.kind, scales);
+            let d = point(b) - point(a);
+            let length = dot(d, d).max(TINY).sqrt();
+            let pull = vec4(d * (weight * inverse * (inverse - 1.0 / length)));
+            gradient[b] += pull;
+            gradient[a] -= pull;
+        }
+        for quad in &self.loose.turns {
+            let at = quad.corners.map(|id| id as usize - span.low);
+            let (cos, slopes) = turn(quad, at.map(point), scales);
+            for (i, slope) in at.into_iter().zip(slopes) {
+                gradient[i] += vec4(slope * (scales.tile(quad.kind) * cos));
+            }
+        }
+        for tile in &self.narrow {
+            let (share, by_rising, by_falling) = tile.share(points);
+            if share < NARROW {
+                let pull = NARROW_WEIGHT * (share - NARROW);
+                let (rising, falling) = (vec4(by_rising * pull), vec4(by_falling * pull));
+                let [b0, b1, t0, t1] = tile.corners;
+                gradient[t1] += rising;
+                gradient[t0] += falling;
+                gradient[b0] -= rising;
+                gradient[b1] -= falling;
+            }
+        }
+        for level in &self.level {
+            let off = self.nodes[level.node / 4].way[0][level.node % 4] - level.way;
+            let cap = level.slack * LEVEL_CAP;
+            let beyond = (off - off.clamp(-level.slack, level.slack)).clamp(-cap, cap);
+            gradient[span.fringe() + level.node] += level.dual * beyond;
+        }
+        if let Some((pole, count)) = ring(span, ends) {
+            for i in span.fringe()..span.fringe() + count {
+                let d = Vec3A::from_vec4(points[i] - pole);
+                let length = dot(d, d).max(TINY).sqrt();
+                gradient[i] += vec4(d * ((1.0 / scales.height - 1.0 / length) / scales.height));
+            }
+        }
+    }
+}
+
+/// The center of the magic ring, and how many of the first free nodes have their posts in it.
+fn ring(span: &Span, ends: &Ends<'_>) -> Option<(Vec4, usize)> {
+    let (pole, count): (DVec3, usize) = ends.ring?;
+    Some((span.local(pole), count.saturating_sub(span.first).min(span.count)))
+}
+
+/// One over the rest length of an edge, and its weight.
+fn rest(kind: EdgeKind, scales: &Scales) -> (f32, f32) {
+    match kind {
+        EdgeKind::Course => (scales.width.recip(), 1.0),
+        EdgeKind::Wale => (scales.height.recip(), 1.0),
+        EdgeKind::Step => ((STEP_REST * scales.width).recip(), STEP_WEIGHT),
+    }
+}
+
+/// The cosine between the middle lines of a turn's tile, and its derivative by each corner. None of the lines counts as
+/// next to nothing.
+fn turn(quad: &Quad, [b0, b1, t0, t1]: [Vec3A; 4], scales: &Scales) -> (f32, [Vec3A; 4]) {
+    let across = 0.5 * ((b1 - b0) + (t1 - t0));
+    let left = quad.kind == TileKind::TurnLeft;
+    let up = if left { t0 - b0 } else { t1 - b1 };
+    let up_length = dot(up, up).sqrt().max(0.3 * scales.height);
+    let across_length = dot(across, across).sqrt().max(0.2 * scales.width);
+    let (up, across) = (up / up_length, across / across_length);
+    let cos = dot(up, across);
+    let by_up = (across - up * cos) / up_length;
+    let by_across = (up - across * cos) * (0.5 / across_length);
+    let slopes = if left {
+        [-by_up - by_across, by_across, by_up - by_across, by_across]
+    } else {
+        [-by_across, by_across - by_up, -by_across, by_across + by_up]
+    };
+    (cos, slopes)
+}
