@@ -9,6 +9,7 @@ use picot::ir::{Gauge, Program};
 use picot::math::{TAU, cos, sin};
 use picot::shape::{End, Joint, ParametricSurface, Shape, girth};
 use picot::{Options, measure, measure_parts, read};
+use std::fmt::Write;
 use std::io;
 
 fn v(x: f64, y: f64, z: f64) -> DVec3 {
@@ -60,7 +61,12 @@ fn pattern(shape: Shape, options: &Options) -> (Shape, Program) {
 }
 
 fn rounds(program: &Program) -> Vec<usize> {
-    let part = &program.pattern.parts[0];
+    rounds_of(program, 0)
+}
+
+/// Stitches of each round of a part.
+fn rounds_of(program: &Program, part: usize) -> Vec<usize> {
+    let part = &program.pattern.parts[part];
     let counts = part.rows.iter().flat_map(|row| {
         let works = row.body.steps().filter(|step| matches!(step, picot::ir::Step::Work(_))).count();
         std::iter::repeat_n(works, row.times as usize)
@@ -589,5 +595,75 @@ fn a_cactus_does_not_divide() {
     for (tube, figures) in shape.tubes.iter().zip(measure_parts(&shape, &program)) {
         let (length, skew) = (figures.length_error.chord.mean_abs, figures.skew.all.mean);
         assert!(length <= 0.05 && skew <= 0.12, "{}: {length} {skew}", tube.name);
+    }
+}
+
+/// A capsule as a tube of a shape file: its curve and its sections.
+fn capsule_tube(a: DVec3, b: DVec3, radius: f64, start: bool) -> String {
+    let way = (b - a).normalize();
+    let (from, to) = (if start { a - way * radius } else { a }, b + way * radius);
+    let length = from.distance(to);
+    let mut section = String::new();
+    let cap = |k: u32| {
+        let angle = TAU / 4.0 * f64::from(k) / 16.0;
+        (radius * (1.0 - cos(angle)) / length, radius * sin(angle))
+    };
+    let mut add = |at: f64, circle: f64| {
+        let _ = writeln!(section, "  {{ at = {at}, circle = {circle} }},");
+    };
+    if start {
+        (0..=16).map(cap).for_each(|(at, circle)| add(at, circle));
+    } else {
+        add(0.0, radius);
+    }
+    (0..=16).rev().map(cap).for_each(|(at, circle)| add(1.0 - at, circle));
+    let point = |p: DVec3| format!("[{}, {}, {}]", p.x, p.y, p.z);
+    format!("curve = [{}, {}]\nend = \"closed\"\nsection = [\n{section}]\n", point(from), point(to))
+}
+
+#[test]
+fn a_shape_file_with_branches_and_its_mesh_agree() {
+    let trunk = (DVec3::ZERO, v(0., 0., 80.), 20.0);
+    let arms = [(v(0., 0., 30.), v(-60., 0., 60.), 9.0), (v(0., 0., 55.), v(70., 0., 75.), 11.0)];
+    let mut text = "unit = \"mm\"\n[gauge]\nstitch = { width = 3.5, height = 3.5 }\n".to_owned();
+    let _ = write!(text, "[trunk]\nstart = \"closed\"\n{}", capsule_tube(trunk.0, trunk.1, trunk.2, true));
+    for (number, (a, b, radius)) in arms.into_iter().enumerate() {
+        let (from, tube) = ((a.z + 20.0) / 120.0, capsule_tube(a, b, radius, false));
+        let _ = write!(text, "[[branch]]\nname = \"arm {number}\"\nfrom = {from}\n{tube}");
+    }
+    let (shape, found) = load("x.toml", text.as_bytes(), &Options::default());
+    let shape = shape.unwrap_or_else(|| panic!("{found:#?}"));
+    let formula = |p: DVec3| {
+        let limbs = arms.iter().map(|(a, b, radius)| capsule(p, *a, *b, *radius));
+        limbs.fold(capsule(p, trunk.0, trunk.1, trunk.2), f64::min)
+    };
+    let solid = Solid::level_set(formula, v(-75., -25., -25.), v(87., 25., 105.), 2.6);
+    let settings = options(3.5);
+    let cut = shape_of(&solid, 3.5);
+    assert_eq!(cut.tubes.len(), 3);
+    let tips = |shape: &Shape| -> Vec<DVec3> {
+        shape.tubes.iter().map(|tube| tube.surface.point(1.0, 0.0)).collect()
+    };
+    let (ours, theirs) = (tips(&shape), tips(&cut));
+    let (_, one) = pattern(shape, &Options::default());
+    let (_, other) = pattern(cut, &settings);
+    for (part, tip) in ours.iter().enumerate() {
+        let far = |i: &usize| (theirs[*i].distance(*tip) * 1e3) as u64;
+        let same = (0..theirs.len()).min_by_key(far).expect("a tube");
+        let (one, other) = (rounds_of(&one, part), rounds_of(&other, same));
+        let name = format!("part {part}: {one:?} {other:?}");
+        // A limb of a mesh begins where it has left the body by a stitch, so it has a row or two less.
+        let sums = [&one, &other].map(|rounds| rounds.iter().sum::<usize>() as f64);
+        let (rows, share) = if part == 0 { (1, 0.03) } else { (2, 0.1) };
+        assert!(one.len().abs_diff(other.len()) <= rows, "{name}");
+        assert!((sums[1] / sums[0] - 1.0).abs() < share, "{name}");
+        // Away from its ends every round has as many stitches, within 3 % or one; a short row goes over some twice.
+        let middle = one.len() / 4..one.len() * 2 / 3;
+        let pairs: Vec<(usize, usize)> =
+            one[middle.clone()].iter().copied().zip(other[middle].iter().copied()).collect();
+        let short = pairs.iter().filter(|(one, other)| 3 * other > 4 * one).count();
+        let alike =
+            pairs.iter().filter(|(one, other)| one.abs_diff(*other) <= (one * 3 / 100).max(1)).count();
+        assert!(short <= 1 && short + alike == pairs.len(), "{name}");
     }
 }
