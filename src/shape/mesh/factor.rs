@@ -296,7 +296,7 @@ mod tests {
 
     #[test]
     fn solutions_satisfy_their_equations() {
-        for side in [1, 2, 5, 30] {
+        for side in [2, 5, 30] {
             let (matrix, places) = grid(side);
             let count = places.len();
             let factor = Factor::new(&matrix, &places, &[count as u32 - 1]).unwrap();
