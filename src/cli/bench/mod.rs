@@ -1,5 +1,6 @@
 //! `picot bench`: times of every stage, and the paper's tables beside our numbers.
 
+mod fidelity;
 mod printed;
 mod reading;
 mod tables;
@@ -71,16 +72,21 @@ pub(crate) fn run(arguments: &Bench, report: Report) -> Result<Status, Failure> 
             bar.advance(printed.name);
         }
     }
+    let fidelity = if arguments.paper { fidelity::rows()? } else { Vec::new() };
     bar.clear();
     let machine = machine();
     if let Some(path) = &arguments.json {
-        let value = to_json(&cases, arguments.runs, &machine)?;
+        let value = to_json(&cases, &fidelity, arguments.runs, &machine)?;
         if path == "-" {
             return print_json(&value);
         }
         files::write_all(&[(Place::File(PathBuf::from(path)), format!("{value:#}\n").into_bytes())])?;
     }
-    let text = if arguments.paper { tables::paper(&cases) } else { tables::times(&cases) };
+    let text = if arguments.paper {
+        format!("{}{}", fidelity::table(&fidelity), tables::paper(&cases))
+    } else {
+        tables::times(&cases)
+    };
     let build = if cfg!(debug_assertions) { "debug build: times say little; " } else { "" };
     print(format!("{text}\n{build}medians of {} runs on {machine}\n", arguments.runs).as_bytes())
 }
@@ -200,7 +206,7 @@ fn machine() -> String {
     }
 }
 
-fn to_json(cases: &[Case], runs: u32, machine: &str) -> Result<Value, Failure> {
+fn to_json(cases: &[Case], fidelity: &[fidelity::Row], runs: u32, machine: &str) -> Result<Value, Failure> {
     let mut list = Vec::new();
     for case in cases {
         let printed = case.printed;
@@ -230,6 +236,6 @@ fn to_json(cases: &[Case], runs: u32, machine: &str) -> Result<Value, Failure> {
     }
     Ok(
         json!({ "schema": "picot.bench/1", "version": env!("CARGO_PKG_VERSION"), "machine": machine, "runs": runs,
-        "debug": cfg!(debug_assertions), "notes": NOTES, "cases": list }),
+        "debug": cfg!(debug_assertions), "notes": NOTES, "cases": list, "fidelity": fidelity::to_json(fidelity)? }),
     )
 }
