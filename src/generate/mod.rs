@@ -163,7 +163,7 @@ fn lay_on(
     if let Some(feet) = first {
         leads[0] = first_row::lead(surface, feet, gauge.height);
     }
-    let Some(rows) = Rows::new(surface, leads, gauge.height) else {
+    let Some(rows) = Rows::new(surface, leads, gauge) else {
         let message = format!("a stitch of {:.2} mm height is too high for this tube", gauge.height);
         return fail(sink, Code::TooFewRows, message, "use a smaller stitch or a longer shape");
     };
@@ -174,8 +174,7 @@ fn lay_on(
     let Some(Laid { mut sheet, start, turn, lifted }) = laid.or_else(|| {
         tries::best(options, expected, first.is_some(), |options, turn, judge| {
             // Where the place of the first row is given, its height is varied.
-            let lifted =
-                first.and_then(|_| Rows::new(surface, [leads[0] + LIFT * turn, leads[1]], gauge.height));
+            let lifted = first.and_then(|_| Rows::new(surface, [leads[0] + LIFT * turn, leads[1]], gauge));
             let turned = Turned { surface: turned.surface, by: turned.by + if fixed { 0.0 } else { turn } };
             let rows = lifted.as_ref().unwrap_or(&rows);
             let mut ground = Ground { slit, first, ..Ground::new(&turned, ends, rows, gauge, options) };

@@ -1,12 +1,17 @@
 //! The row table: where along the tube each row lies, so that the least distance of two rows is one stitch height.
 
-use crate::shape::{End, Jet, ParametricSurface};
+use crate::ir::Gauge;
+use crate::shape::{End, Jet, ParametricSurface, girth};
 
 /// Share of the mean row distance in the spacing rule; the rest is the least distance around the row.
 /// The paper's rule is 0; a fifth opens fewer short rows at no cost elsewhere.
 const MEAN_SHARE: f64 = 0.2;
 /// Samples around a row.
-const AROUND: u32 = 24;
+const AROUND: usize = 24;
+/// Most rows that one side may be ahead at the end; in rounds of more than so many stitches the share of the mean shrinks
+/// for it. Shorter rounds have no room for the short rows that this opens.
+const MOST_AHEAD: f64 = 1.15;
+const LONG_ROUND: f64 = 60.0;
 /// Most rows that are tabulated, against surfaces whose derivative by u is next to nothing.
 const MAX_ROWS: usize = 2_000_000;
 
@@ -39,29 +44,22 @@ pub(crate) fn lead(end: End) -> f64 {
 }
 
 impl Rows {
-    /// Spaces rows of height `height` over the tube, of which the first and the last lie so many rows off its ends ([`lead`]). `None` when not even two rows fit or the surface has no length.
-    pub(crate) fn new(surface: &dyn ParametricSurface, [lead, tail]: [f64; 2], height: f64) -> Option<Self> {
-        let spacing = |u: f64| {
-            let (mut least, mut sum) = (f64::MAX, 0.0);
-            for k in 0..AROUND {
-                let speed = row_speed(&surface.jet(u, f64::from(k) / f64::from(AROUND)));
-                least = least.min(speed);
-                sum += speed;
-            }
-            (1.0 - MEAN_SHARE) * least + MEAN_SHARE * sum / f64::from(AROUND)
+    /// Spaces rows of the height of a stitch over the tube, of which the first and the last lie so many rows off its ends ([`lead`]). `None` when not even two rows fit or the surface has no length.
+    pub(crate) fn new(
+        surface: &dyn ParametricSurface,
+        [lead, tail]: [f64; 2],
+        gauge: &Gauge,
+    ) -> Option<Self> {
+        let height = gauge.height;
+        let (mut knots, ahead) = table(surface, height, MEAN_SHARE)?;
+        let mean: f64 = {
+            let step = (knots.len() / 16).max(1);
+            let girths = knots.iter().step_by(step).map(|u| girth(surface, u.clamp(1e-6, 1.0 - 1e-6), 8));
+            let (sum, count) = girths.fold((0.0, 0.0), |(sum, count), girth| (sum + girth, count + 1.0));
+            sum / count
         };
-        // A pole proper has no direction around; look a hair beside it.
-        let inside = |u: f64| u.clamp(1e-6, 1.0 - 1e-6);
-        let mut knots = vec![0.0];
-        let mut u = 0.0;
-        while u < 1.0 {
-            let first = height / spacing(inside(u));
-            let step = height / spacing(inside((u + 0.5 * first).min(1.0)));
-            if !step.is_finite() || step <= 0.0 || knots.len() > MAX_ROWS {
-                return None;
-            }
-            u += step.min(1.0);
-            knots.push(u);
+        if ahead > MOST_AHEAD && mean > LONG_ROUND * gauge.width {
+            knots = table(surface, height, MEAN_SHARE * MOST_AHEAD / ahead)?.0;
         }
         let last = knots.len() - 1;
         let partial = (1.0 - knots[last - 1]) / (knots[last] - knots[last - 1]);
@@ -84,4 +82,36 @@ impl Rows {
         let x = i as f64 + (u - self.knots[i]) / (self.knots[i + 1] - self.knots[i]);
         x / self.scale - self.lead
     }
+}
+
+/// The table of rows with a share of the mean distance in their spacing, and by how many rows one side is ahead at the
+/// end: where rows lie closer than their spacing it gains on them, and short rows on the other side cannot hold it back; where
+/// they lie farther apart, short rows keep it level. `None` when the surface has no length.
+fn table(surface: &dyn ParametricSurface, height: f64, mean_share: f64) -> Option<(Vec<f64>, f64)> {
+    // A pole proper has no direction around; look a hair beside it.
+    let inside = |u: f64| u.clamp(1e-6, 1.0 - 1e-6);
+    let look = |u: f64| {
+        let speeds: [f64; AROUND] =
+            std::array::from_fn(|k| row_speed(&surface.jet(inside(u), k as f64 / AROUND as f64)));
+        let least = speeds.iter().copied().fold(f64::MAX, f64::min);
+        let mean = speeds.iter().sum::<f64>() / AROUND as f64;
+        ((1.0 - mean_share) * least + mean_share * mean, speeds)
+    };
+    let mut knots = vec![0.0];
+    let mut u = 0.0;
+    let mut ahead = [0.0_f64; AROUND];
+    while u < 1.0 {
+        let first = height / look(u).0;
+        let (spacing, speeds) = look((u + 0.5 * first).min(1.0));
+        let step = height / spacing;
+        if !step.is_finite() || step <= 0.0 || knots.len() > MAX_ROWS {
+            return None;
+        }
+        u += step.min(1.0);
+        for (ahead, speed) in ahead.iter_mut().zip(speeds) {
+            *ahead = (*ahead + 1.0 - speed / spacing).max(0.0);
+        }
+        knots.push(u);
+    }
+    Some((knots, ahead.into_iter().fold(0.0, f64::max)))
 }
