@@ -8,8 +8,8 @@ use super::score::Score;
 /// Parts of more stitches get one try, or, where it has inverted tiles, a few: the luck of single shapings evens out there.
 const MOST_STITCHES: f64 = 5_000.0;
 const MOST_RESCUED: f64 = 50_000.0;
-/// Scores that need no second try, and no third.
-const GOOD: [f64; 2] = [1.45, 2.1];
+/// A score that needs no further try.
+const GOOD: f64 = 2.1;
 /// A try whose score is so much worse than the best before its rows have settled is given up.
 const BAR: f64 = 0.1;
 /// Further tries for parts on which all have inverted tiles.
@@ -82,7 +82,7 @@ pub(super) fn best(
     for index in 0..most {
         let enough = match index < tries {
             true if given => 0.0,
-            true => GOOD[usize::from(index > 1)],
+            true => GOOD,
             false => f64::MAX,
         };
         if best.as_ref().is_some_and(|(score, _)| score.inverted == 0 && score.total <= enough) {

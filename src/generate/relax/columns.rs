@@ -7,6 +7,9 @@ use crate::generate::sheet::{Edge, EdgeKind, Quad, TileKind};
 use crate::ir::NodeId;
 use glam::Vec4;
 
+/// So many wales are not kept beside their blocks.
+const MANY: usize = 1 << 16;
+
 /// The wales of a sheet from a mark on, with what hangs between neighbors.
 #[derive(Debug, Default)]
 pub(super) struct Columns {
@@ -119,15 +122,23 @@ impl Columns {
                 slant: Vec4::ZERO,
             }
         }));
+        if self.wales.len() > MANY {
+            self.wales = Vec::new();
+        }
         low as usize
     }
 
-    /// The nodes of each tile of weight: base left, base right, top left, top right.
-    pub(super) fn tiles(&self) -> impl Iterator<Item = [NodeId; 4]> {
-        self.wales
-            .windows(2)
-            .filter(|pair| pair[1].tile > 0.0)
-            .map(|pair| [pair[0].base, pair[1].base, pair[0].top, pair[1].top])
+    /// The nodes of each tile of weight, as places: base left, base right, top left, top right.
+    pub(super) fn tiles(&self) -> impl Iterator<Item = [usize; 4]> {
+        let wales = self.blocks.iter().flat_map(|block| {
+            let places = block.base.each.into_iter().zip(block.top.each);
+            places.zip(block.tile.to_array()).map(|((base, top), tile)| (base as usize, top as usize, tile))
+        });
+        let before = std::iter::once((0, 0, 0.0)).chain(wales.clone());
+        before
+            .zip(wales)
+            .filter(|(_, (.., tile))| *tile > 0.0)
+            .map(|((b0, t0, _), (b1, t1, _))| [b0, b1, t0, t1])
     }
 
     /// Sums the pulls of all wales, courses and tiles at their nodes.

@@ -57,7 +57,14 @@ fn add_outer(to: &mut [Vec4; 2], a: Vec3A, weight: f32) {
 
 impl Relaxer {
     /// What loose edges and turns add to the matrices; and the narrow tiles and the level nodes, for the next few sweeps.
-    pub(super) fn stiffen_loose(&mut self, sheet: &Sheet, span: &Span, scales: &Scales, ends: &Ends<'_>) {
+    pub(super) fn stiffen_loose(
+        &mut self,
+        stiffness: &mut [[Vec4; 2]],
+        sheet: &Sheet,
+        span: &Span,
+        scales: &Scales,
+        ends: &Ends<'_>,
+    ) {
         let point = |i: usize| Vec3A::from_vec4(self.point[i]);
         for edge in &self.loose.edges {
             let (a, b) = (edge.a as usize - span.low, edge.b as usize - span.low);
@@ -65,14 +72,14 @@ impl Relaxer {
             let d = point(b) - point(a);
             let weight = 2.0 * weight * inverse * inverse / dot(d, d).max(TINY);
             for i in [a, b] {
-                add_outer(&mut self.stiffness[i], d, weight);
+                add_outer(&mut stiffness[i], d, weight);
             }
         }
         for quad in &self.loose.turns {
             let at = quad.corners.map(|id| id as usize - span.low);
             let (_, slopes) = turn(quad, at.map(point), scales);
             for (i, slope) in at.into_iter().zip(slopes) {
-                add_outer(&mut self.stiffness[i], slope, 4.0 * scales.tile(quad.kind));
+                add_outer(&mut stiffness[i], slope, 4.0 * scales.tile(quad.kind));
             }
         }
         self.narrow.clear();
@@ -80,19 +87,18 @@ impl Relaxer {
         if let Some((rows, top)) = ends.level {
             let unit = 0.5 / (scales.width * scales.height);
             for corners in self.columns.tiles() {
-                let [b0, b1, t0, t1] = corners.map(|id| id as usize);
-                let id = b0;
+                let [b0, b1, t0, t1] = corners;
+                let id = b0 + span.low;
                 if b0 == b1 || t0 == t1 || id < span.first {
                     continue;
                 }
-                let corners = [b0, b1, t0, t1].map(|id| id - span.low);
                 let normal = sheet.dv[id].cross(sheet.du[id]).normalize_or_zero().as_vec3a() * unit;
                 let tile = Narrow { corners, normal };
                 let (share, by_rising, by_falling) = tile.share(&self.point);
                 if share < 2.0 * NARROW {
                     let slopes = [by_rising, by_falling, by_falling, by_rising];
                     for (i, slope) in corners.into_iter().zip(slopes) {
-                        add_outer(&mut self.stiffness[i], slope, 4.0 * NARROW_WEIGHT);
+                        add_outer(&mut stiffness[i], slope, 4.0 * NARROW_WEIGHT);
                     }
                     self.narrow.push(tile);
                 }
@@ -107,11 +113,7 @@ impl Relaxer {
                 let (du, dv) = (sheet.du[i], sheet.dv[i]);
                 // The matrix takes the whole weight along u; that it also takes some across is no harm.
                 let weight = LEVEL_WEIGHT / sheet.height.powi(2);
-                add_outer(
-                    &mut self.stiffness[i - span.low],
-                    du.normalize_or_zero().as_vec3a(),
-                    weight as f32,
-                );
+                add_outer(&mut stiffness[i - span.low], du.normalize_or_zero().as_vec3a(), weight as f32);
                 let across = du - dv * (du.dot(dv) / dv.length_squared().max(1e-30));
                 let dual = across / across.length_squared().max(1e-30);
                 let slack = rows.at(sheet.v[i] + LEVEL_SLACK) - rows.at(sheet.v[i]);
@@ -124,10 +126,11 @@ impl Relaxer {
             }
         }
         if let Some((pole, count)) = ring(span, ends) {
-            for i in span.fringe()..span.fringe() + count {
-                let d = Vec3A::from_vec4(self.point[i] - pole);
+            let own = stiffness.iter_mut().zip(&self.point).skip(span.fringe());
+            for (own, point) in own.take(count) {
+                let d = Vec3A::from_vec4(*point - pole);
                 let weight = 1.0 / (scales.height * scales.height * dot(d, d).max(TINY));
-                add_outer(&mut self.stiffness[i], d, weight);
+                add_outer(own, d, weight);
             }
         }
     }

@@ -87,11 +87,10 @@ impl Scales {
 pub(crate) struct Relaxer {
     columns: Columns,
     loose: Loose,
-    /// Points from the lowest node that a free one hangs on, relative to `origin`, and the pull at each. Both are filled up to
-    /// whole blocks of free nodes.
+    /// Points from the lowest node that a free one hangs on, relative to `origin`, and the pull at each, or the two parts of its
+    /// matrix. Both are filled up to whole blocks of free nodes.
     point: Vec<Vec4>,
     gradient: Vec<Vec4>,
-    stiffness: Vec<[Vec4; 2]>,
     /// Blocks of four free nodes.
     nodes: Vec<Nodes>,
     /// Free tops of the last turn.
@@ -250,11 +249,14 @@ impl Relaxer {
 
     /// Takes up the inverse matrices and what else is good for a few sweeps.
     fn stiffen(&mut self, sheet: &Sheet, span: &Span, scales: &Scales, ends: &Ends<'_>) {
-        self.stiffness.clear();
-        self.stiffness.resize(self.point.len(), [Vec4::ZERO; 2]);
-        self.columns.stiffen(&self.point, &mut self.stiffness, scales);
-        self.stiffen_loose(sheet, span, scales, ends);
-        let own = self.stiffness[span.fringe()..].chunks_exact(4);
+        // The matrices lie where the pulls will.
+        let mut matrices = std::mem::take(&mut self.gradient);
+        matrices.clear();
+        matrices.resize(2 * self.point.len(), Vec4::ZERO);
+        let stiffness = matrices.as_chunks_mut::<2>().0;
+        self.columns.stiffen(&self.point, stiffness, scales);
+        self.stiffen_loose(stiffness, sheet, span, scales, ends);
+        let own = stiffness[span.fringe()..].chunks_exact(4);
         for (nodes, own) in self.nodes.iter_mut().zip(own) {
             let part = |i: usize| Four::new([own[0][i], own[1][i], own[2][i], own[3][i]]);
             let matrices = Matrices { diagonal: part(0), off: part(1) };
@@ -269,6 +271,7 @@ impl Relaxer {
             let scale = Vec4::select(det.cmpgt(Vec4::ZERO), det.recip(), Vec4::ZERO);
             nodes.inverse = [hvv * scale, -huv * scale, huu * scale];
         }
+        self.gradient = matrices;
     }
 
     /// One damped Newton step per node in its own (u, v), and its momentum; points follow to first order.
