@@ -56,12 +56,12 @@ use frontend::mesh;
 use frontend::{Input, Reader};
 use generate::capunaman::Baseline;
 use ir::verify::Verified;
-use ir::{Finish, Gauge, Graph, Hand, Maker, Part, PartId, Pattern, Program, Start};
+use ir::{Finish, Gauge, Graph, Maker, Part, PartId, Pattern, Program, Start};
 use lower::divide::{Parent, Share};
 use metrics::{Measure, Mesh, Sampler};
 use preview::{Refused, predict};
 use rayon::prelude::*;
-use shape::{Attachment, Drift, End, Joint, Mirrored, ParametricSurface, Shape, Tube, Twisted};
+use shape::{Attachment, End, Joint, Shape, Tube, for_maker};
 use std::borrow::Cow;
 
 /// What the stages before printing may be told.
@@ -278,18 +278,14 @@ pub fn measure(shape: &Shape, program: &Program) -> Measure {
 fn sample(shape: &Shape, index: usize, graph: &Graph, maker: Maker, sampler: &mut Sampler) {
     let Some(tube) = shape.tubes.get(index) else { return };
     sampler.count(graph);
-    let mirror = Mirrored(&*tube.surface);
-    let (mut surface, mut graph): (&dyn ParametricSurface, _) = match maker.hand {
-        Hand::Right => (&*tube.surface, Cow::Borrowed(graph)),
-        Hand::Left => (&mirror, Cow::Owned(graph.clone().mirrored())),
-    };
-    let drift = (maker.lean != 0.0).then(|| Drift::new(surface, &shape.gauge, maker.lean));
-    let twisted = drift.as_ref().map(|drift| Twisted { surface, drift });
-    if let (Some(drift), Some(twisted)) = (&drift, &twisted) {
-        graph = Cow::Owned(drift.as_laid(graph.into_owned()));
-        surface = twisted;
-    }
-    sampler.add_on(surface, [tube.start, tube.end], &net(shape, index, &graph));
+    let graph = graph.right_handed(maker.hand);
+    for_maker(&*tube.surface, &shape.gauge, maker, |surface, drift| {
+        let graph = match drift {
+            Some(drift) => Cow::Owned(drift.as_laid(graph.into_owned())),
+            None => graph,
+        };
+        sampler.add_on(surface, [tube.start, tube.end], &net(shape, index, &graph));
+    });
 }
 
 /// Measures each part by itself, in the order of the tubes.

@@ -27,10 +27,8 @@ pub use options::{Options, Preset};
 
 use crate::diag::{Code, Diagnostic, Sink};
 use crate::ir::maker::mirrored;
-use crate::ir::{Gauge, Graph, Hand, MAX_LOOPS, Maker};
-use crate::shape::{
-    Attachment, Drift, End, Joint, Mirrored, ParametricSurface, Tube, Twisted, area, is_revolution,
-};
+use crate::ir::{Gauge, Graph, Hand, MAX_LOOPS};
+use crate::shape::{Attachment, End, Joint, ParametricSurface, Tube, area, for_maker, is_revolution};
 use glam::DVec3;
 use patches::Patches;
 use relax::{Effort, Ends, Mark, Relaxer};
@@ -87,24 +85,22 @@ fn lay(
     }
     let options = &options.resolved();
     // What the left hand works comes out mirrored, so its pattern is made for the mirror image.
-    let Maker { hand, lean } = options.maker();
-    let mirror = Mirrored(&*tube.surface);
-    let (target, loops): (&dyn ParametricSurface, _) = match hand {
-        Hand::Right => (&*tube.surface, loops.map(Cow::Borrowed)),
-        Hand::Left => (&mirror, loops.map(|loops| loops.iter().copied().map(mirrored).collect())),
+    let hand = options.maker().hand;
+    let loops: Option<Cow<'_, [DVec3]>> = match hand {
+        Hand::Right => loops.map(Cow::Borrowed),
+        Hand::Left => loops.map(|loops| loops.iter().copied().map(mirrored).collect()),
     };
     // What leans twists as it is worked, so its pattern is made for the shape twisted the other way.
-    let drift = (lean != 0.0).then(|| Drift::new(target, gauge, lean));
-    let twisted = drift.as_ref().map(|drift| Twisted { surface: target, drift });
-    let target = twisted.as_ref().map_or(target, |twisted| twisted as &dyn ParametricSurface);
-    if let Some(drift) = &drift {
-        warn_of(drift.turns(1.0), &tube.name, sink);
-    }
-    let graph = lay_on(target, tube, loops.as_deref(), gauge, options, sink)?;
-    let graph = match &drift {
-        Some(drift) => drift.come_out(graph),
-        None => graph,
-    };
+    let graph = for_maker(&*tube.surface, gauge, options.maker(), |target, drift| {
+        if let Some(drift) = drift {
+            warn_of(drift.turns(1.0), &tube.name, sink);
+        }
+        let graph = lay_on(target, tube, loops.as_deref(), gauge, options, sink)?;
+        Some(match drift {
+            Some(drift) => drift.come_out(graph),
+            None => graph,
+        })
+    })?;
     Some(match hand {
         Hand::Right => graph,
         Hand::Left => graph.mirrored(),

@@ -52,13 +52,7 @@ impl Rows {
     ) -> Option<Self> {
         let height = gauge.height;
         let (mut knots, ahead) = table(surface, height, MEAN_SHARE)?;
-        let mean: f64 = {
-            let step = (knots.len() / 16).max(1);
-            let girths = knots.iter().step_by(step).map(|u| girth(surface, u.clamp(1e-6, 1.0 - 1e-6), 8));
-            let (sum, count) = girths.fold((0.0, 0.0), |(sum, count), girth| (sum + girth, count + 1.0));
-            sum / count
-        };
-        if ahead > MOST_AHEAD && mean > LONG_ROUND * gauge.width {
+        if ahead > MOST_AHEAD && mean_girth(surface, &knots) > LONG_ROUND * gauge.width {
             knots = table(surface, height, MEAN_SHARE * MOST_AHEAD / ahead)?.0;
         }
         let last = knots.len() - 1;
@@ -84,12 +78,23 @@ impl Rows {
     }
 }
 
+/// A pole proper has no direction around; look a hair beside it.
+fn inside(u: f64) -> f64 {
+    u.clamp(1e-6, 1.0 - 1e-6)
+}
+
+/// Mean girth at some of the rows, in mm.
+fn mean_girth(surface: &dyn ParametricSurface, knots: &[f64]) -> f64 {
+    let step = (knots.len() / 16).max(1);
+    let girths = knots.iter().step_by(step).map(|u| girth(surface, inside(*u), 8));
+    let (sum, count) = girths.fold((0.0, 0.0), |(sum, count), girth| (sum + girth, count + 1.0));
+    sum / count
+}
+
 /// The table of rows with a share of the mean distance in their spacing, and by how many rows one side is ahead at the
 /// end: where rows lie closer than their spacing it gains on them, and short rows on the other side cannot hold it back; where
 /// they lie farther apart, short rows keep it level. `None` when the surface has no length.
 fn table(surface: &dyn ParametricSurface, height: f64, mean_share: f64) -> Option<(Vec<f64>, f64)> {
-    // A pole proper has no direction around; look a hair beside it.
-    let inside = |u: f64| u.clamp(1e-6, 1.0 - 1e-6);
     let look = |u: f64| {
         let speeds: [f64; AROUND] =
             std::array::from_fn(|k| row_speed(&surface.jet(inside(u), k as f64 / AROUND as f64)));

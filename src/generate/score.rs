@@ -24,8 +24,14 @@ pub(super) struct Score {
 }
 
 impl Score {
+    /// Mean absolute length error with its spread, and mean skew, each by its usual size; a bias and inverted tiles cost extra,
+    /// and so do words, with so much ease.
+    pub(super) fn of(sheet: &Sheet, ease: f64) -> Self {
+        Self::of_fit(sheet).with_words(sheet, ease)
+    }
+
     /// The same with so much weight on few words: runs of stitches, and four words for each short row.
-    pub(super) fn with_words(self, sheet: &Sheet, ease: f64) -> Self {
+    fn with_words(self, sheet: &Sheet, ease: f64) -> Self {
         let kind = |work: &Work| work.stitch;
         let changes =
             |works: &[Work]| works.windows(2).filter(|pair| kind(&pair[0]) != kind(&pair[1])).count();
@@ -35,8 +41,7 @@ impl Score {
         Self { total: self.total + ease * WORDS * share / USUAL_WORDS, ..self }
     }
 
-    /// Mean absolute length error with its spread, and mean skew, each by its usual size; a bias and inverted tiles cost extra.
-    pub(super) fn of(sheet: &Sheet) -> Self {
+    fn of_fit(sheet: &Sheet) -> Self {
         let (mut length, mut sum, mut square) = (0.0, 0.0, 0.0);
         for edge in &sheet.edges {
             let rest = if edge.kind == EdgeKind::Wale { sheet.height } else { sheet.width };

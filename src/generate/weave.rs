@@ -173,7 +173,7 @@ impl<'s> Weaver<'s> {
         let first = if judge.bar < f64::INFINITY { self.options.sweeps.min(FIRST_SWEEPS) } else { 0 };
         if first > 0 {
             self.settle_all(first, judge.level);
-            let score = Score::of(&self.sheet).with_words(&self.sheet, self.options.ease());
+            let score = Score::of(&self.sheet, self.options.ease());
             if score.total > judge.bar {
                 return Outcome::Outdone;
             }

@@ -1,7 +1,8 @@
 //! Where each stitch lies: nodes are open loops in working order, tiles are the stitches between them.
 
-use super::{Direction, Stitch};
+use super::{Direction, Hand, Stitch};
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// Index of a node in [`Graph::nodes`].
 pub type NodeId = u32;
@@ -87,6 +88,14 @@ impl std::fmt::Debug for Corners {
 }
 
 impl Graph {
+    /// The graph as it would be if the same words were worked with the right hand.
+    pub fn right_handed(&self, hand: Hand) -> Cow<'_, Self> {
+        match hand {
+            Hand::Right => Cow::Borrowed(self),
+            Hand::Left => Cow::Owned(self.clone().mirrored()),
+        }
+    }
+
     /// The graph seen in a mirror ([`maker::mirrored`](super::maker::mirrored)): v runs the other way around.
     #[must_use]
     pub fn mirrored(mut self) -> Self {

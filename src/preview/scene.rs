@@ -12,7 +12,6 @@ use crate::ir::yarn::Yarn as Weight;
 use crate::ir::{Direction, Gauge, GaugeOrigin, Graph, Hand, Kind, PartId, Program};
 use glam::DVec3;
 use serde::Deserialize;
-use std::borrow::Cow;
 use std::ops::Range;
 
 /// Most stitches that a scene holds.
@@ -209,7 +208,7 @@ impl Scene {
             }
         } else {
             for (net, graph) in nets.iter().zip(&program.graphs) {
-                let graph = as_right_handed(graph, program.maker.hand);
+                let graph = graph.right_handed(program.maker.hand);
                 let places: Vec<DVec3> = graph.nodes.iter().map(|node| node.position).collect();
                 scene.add(program, net, &places, Some(&graph))?;
             }
@@ -270,14 +269,6 @@ impl Scene {
         let stitches = from..self.stitches.len();
         self.pieces.push(Piece { name: name.to_owned(), part: net.part, copy: net.copy, stitches, yarn });
         Ok(())
-    }
-}
-
-/// A graph as it would be if the same words were worked with the right hand.
-pub(super) fn as_right_handed(graph: &Graph, hand: Hand) -> Cow<'_, Graph> {
-    match hand {
-        Hand::Right => Cow::Borrowed(graph),
-        Hand::Left => Cow::Owned(graph.clone().mirrored()),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Stitches that do not stand quite straight: how far a fabric twists by itself, and surfaces twisted the other way.
 
-use super::{Jet, ParametricSurface};
-use crate::ir::{Gauge, Graph};
+use super::{Jet, Mirrored, ParametricSurface};
+use crate::ir::{Gauge, Graph, Hand, Maker};
 use crate::math::{TAU, sin_cos_turns};
 use glam::{DMat3, DVec3};
 
@@ -180,6 +180,26 @@ impl ParametricSurface for Twisted<'_> {
             dv: piece.turn * motion.turned(jet.dv),
         }
     }
+}
+
+/// Hands on the surface that the stitches of this maker are laid on, so that the surface itself comes out: its mirror image for
+/// the left hand, twisted against the drift of stitches that lean; and that drift.
+pub fn for_maker<R>(
+    surface: &dyn ParametricSurface,
+    gauge: &Gauge,
+    maker: Maker,
+    then: impl FnOnce(&dyn ParametricSurface, Option<&Drift>) -> R,
+) -> R {
+    let mirror = Mirrored(surface);
+    let surface: &dyn ParametricSurface = match maker.hand {
+        Hand::Right => surface,
+        Hand::Left => &mirror,
+    };
+    if maker.lean == 0.0 {
+        return then(surface, None);
+    }
+    let drift = Drift::new(surface, gauge, maker.lean);
+    then(&Twisted { surface, drift: &drift }, Some(&drift))
 }
 
 #[cfg(test)]

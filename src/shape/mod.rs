@@ -23,7 +23,7 @@ pub(crate) mod stack;
 pub mod sweep;
 
 pub use bezier::Bezier;
-pub use drift::{Drift, Twisted};
+pub use drift::{Drift, Twisted, for_maker};
 pub use measure::{area, girth, is_revolution, length_along};
 pub use mirror::Mirrored;
 pub use ring::Ring;

@@ -75,12 +75,9 @@ pub(crate) fn run(arguments: &Bench, report: Report) -> Result<Status, Failure> 
     let fidelity = if arguments.paper { fidelity::rows()? } else { Vec::new() };
     bar.clear();
     let machine = machine();
-    if let Some(path) = &arguments.json {
-        let value = to_json(&cases, &fidelity, arguments.runs, &machine)?;
-        if path == "-" {
-            return print_json(&value);
-        }
-        files::write_all(&[(Place::File(PathBuf::from(path)), format!("{value:#}\n").into_bytes())])?;
+    let json = arguments.json.as_deref();
+    if let Some(status) = write_json(json, || to_json(&cases, &fidelity, arguments.runs, &machine))? {
+        return Ok(status);
     }
     let text = if arguments.paper {
         format!("{}{}", fidelity::table(&fidelity), tables::paper(&cases))
@@ -89,6 +86,20 @@ pub(crate) fn run(arguments: &Bench, report: Report) -> Result<Status, Failure> 
     };
     let build = if cfg!(debug_assertions) { "debug build: times say little; " } else { "" };
     print(format!("{text}\n{build}medians of {} runs on {machine}\n", arguments.runs).as_bytes())
+}
+
+/// Writes JSON where it is asked for; where that is stdout, nothing else goes there, and the status of that is returned.
+fn write_json(
+    path: Option<&str>,
+    value: impl FnOnce() -> Result<Value, Failure>,
+) -> Result<Option<Status>, Failure> {
+    let Some(path) = path else { return Ok(None) };
+    let value = value()?;
+    if path == "-" {
+        return print_json(&value).map(Some);
+    }
+    files::write_all(&[(Place::File(PathBuf::from(path)), format!("{value:#}\n").into_bytes())])?;
+    Ok(None)
 }
 
 fn case(printed: &'static Printed, size: f64, runs: u32, report: Report) -> Result<Case, Failure> {

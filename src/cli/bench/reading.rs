@@ -1,18 +1,17 @@
 //! What the option `readability` does: words and fidelity of many shapes at five values, as a table for the manual.
 
 use super::super::args::Algorithm;
-use super::super::files::{self, Place};
+use super::super::files;
 use super::super::measure::{self, Measured};
 use super::super::plan::reader_of;
 use super::super::progress::Bar;
 use super::super::report::Report;
-use super::super::{Failure, Status, print, print_json};
+use super::super::{Failure, Status, print};
 use picot::diag::{Sink, Sources};
 use picot::frontend::Input;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::fmt::Write;
-use std::path::PathBuf;
 
 /// The values that are compared.
 const VALUES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
@@ -32,12 +31,8 @@ pub(super) fn run(inputs: &[String], json: Option<&str>, report: Report) -> Resu
     };
     let cases = inputs.par_iter().map(case).collect::<Result<Vec<_>, _>>()?;
     bar.clear();
-    if let Some(path) = json {
-        let value = to_json(&cases)?;
-        if path == "-" {
-            return print_json(&value);
-        }
-        files::write_all(&[(Place::File(PathBuf::from(path)), format!("{value:#}\n").into_bytes())])?;
+    if let Some(status) = super::write_json(json, || to_json(&cases))? {
+        return Ok(status);
     }
     print(table(&cases).as_bytes())
 }

@@ -1,7 +1,7 @@
 //! The wales in working order, four at a time: each carries its own pull, that of the course between its top and the top
 //! before it, and that of the tile between it and the wale before it.
 
-use super::lanes::{Four, Matrices, Places};
+use super::lanes::{Four, Matrices, Places, root};
 use super::{Scales, TINY};
 use crate::generate::sheet::{Edge, EdgeKind, Quad, TileKind};
 use crate::ir::NodeId;
@@ -241,12 +241,6 @@ fn is_turn(quad: &Quad) -> bool {
 /// The wale is the right side of the tile.
 fn spans(quad: &Quad, wale: &Edge) -> bool {
     quad.corners[1] == wale.a && quad.corners[3] == wale.b
-}
-
-#[inline]
-fn root(square: Vec4) -> Vec4 {
-    // The vector's own may call a library.
-    Vec4::from_array(square.to_array().map(f32::sqrt))
 }
 
 #[inline]

@@ -3,6 +3,13 @@
 use glam::{Mat4, Vec4};
 use std::ops::{Add, AddAssign, Mul, Sub};
 
+/// The square root of each.
+#[inline]
+pub(super) fn root(square: Vec4) -> Vec4 {
+    // The vector's own may call a library.
+    Vec4::from_array(square.to_array().map(f32::sqrt))
+}
+
 /// Four places in an array.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Places {

@@ -16,7 +16,7 @@ use super::sheet::{Sheet, TileKind};
 use crate::shape::ParametricSurface;
 use columns::{Columns, Loose};
 use glam::{DVec3, Vec4, Vec4Swizzles};
-use lanes::{Four, Matrices};
+use lanes::{Four, Matrices, root};
 
 /// Weight of the soft links that close the steps at short-row ends, and their rest length in stitch widths.
 const STEP_WEIGHT: f32 = 0.2;
@@ -286,7 +286,7 @@ impl Relaxer {
             let (x, y) = (-(uu * gu + uv * gv), -(uv * gu + vv * gv));
             let way = du.times(x) + dv.times(y);
             let length = way.dot(way).max(longest);
-            let scale = Vec4::from_array((longest / length).to_array().map(f32::sqrt));
+            let scale = root(longest / length);
             // The sweep began ahead of where the last one ended, by the momentum that it was given.
             let new_u = (u + x * scale).max(low).min(high);
             let new_v = v + y * scale;

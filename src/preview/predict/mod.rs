@@ -11,7 +11,7 @@ mod start;
 mod system;
 
 use super::net::{NONE, Net, nets};
-use super::scene::{MAX_STITCHES, Refused, as_right_handed};
+use super::scene::{MAX_STITCHES, Refused};
 use crate::diag::Sink;
 use crate::ir::Graph;
 use crate::ir::verify::Verified;
@@ -45,7 +45,7 @@ pub fn fit(program: &Verified<'_>, gauge: [f64; 2], sink: &Sink<'_>) -> Result<O
     let nets = nets(program, MAX_STITCHES);
     let (places, rest) = places(&nets, gauge, sink)?;
     let target: Vec<Vec<DVec3>> =
-        program.graphs.iter().map(|graph| positions(&as_right_handed(graph, program.maker.hand))).collect();
+        program.graphs.iter().map(|graph| positions(&graph.right_handed(program.maker.hand))).collect();
     Ok(compare::fit(&nets, &places, &target, gauge[1], rest))
 }
 
