@@ -1,4 +1,4 @@
-//! A surface as bicubic patches: exact at the corners of a grid as fine as the stitches, and quick to look up between them.
+//! A surface as bicubic patches: exact at the corners of a grid about as fine as the stitches, and quick to look up between them.
 //!
 //! A tube is looked up some thirty times a stitch, most of it for tries that are thrown away. Between the corners the
 //! error is a fourth power: of an arc of a quarter radian, 1e-5 of its radius. In the end all nodes are put on the surface
@@ -10,6 +10,8 @@ use glam::{DVec3, Vec3A};
 
 /// Rows of patches at either end that are looked up on the surface itself, for it may have any power of u at a pole.
 const MARGIN: usize = 1;
+/// Stitches that a patch is long and wide.
+const STITCHES: f64 = 2.0;
 /// Fewest patches along and around, and most of all.
 const LEAST: [usize; 2] = [8, 16];
 const MOST: f64 = 30_000.0;
@@ -38,7 +40,7 @@ pub(super) struct Patches<'s> {
 }
 
 impl<'s> Patches<'s> {
-    /// About one patch a stitch; `None` where these are too many, or the surface has no sound derivatives.
+    /// Patches of a few stitches; `None` where these are too many, or the surface has no sound derivatives.
     pub(super) fn new(surface: &'s dyn ParametricSurface, gauge: &Gauge) -> Option<Self> {
         let [along, around] = Self::size(surface, gauge)?;
         let (by_u, by_v) = (1.0 / along as f64, 1.0 / around as f64);
@@ -71,7 +73,7 @@ impl<'s> Patches<'s> {
         Some(Self { surface, origin, along, around, corners })
     }
 
-    /// Patches along and around for one a stitch where rows are densest.
+    /// Patches along and around, for their size where rows are densest.
     fn size(surface: &dyn ParametricSurface, gauge: &Gauge) -> Option<[usize; 2]> {
         let (mut longest, mut widest) = (0.0_f64, 0.0_f64);
         for i in 0..LOOKS {
@@ -85,7 +87,7 @@ impl<'s> Patches<'s> {
             longest = longest.max(speed);
             widest = widest.max(girth);
         }
-        let (along, around) = (longest / gauge.height, widest / gauge.width);
+        let (along, around) = (longest / (STITCHES * gauge.height), widest / (STITCHES * gauge.width));
         let fits = along.max(LEAST[0] as f64) * around.max(LEAST[1] as f64) <= MOST;
         fits.then(|| {
             let count = |stitches: f64, least| (stitches.ceil() as usize).max(least);

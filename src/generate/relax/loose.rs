@@ -92,10 +92,12 @@ impl Relaxer {
                 if b0 == b1 || t0 == t1 || id < span.first {
                     continue;
                 }
-                let normal = sheet.dv[id].cross(sheet.du[id]).normalize_or_zero().as_vec3a() * unit;
-                let tile = Narrow { corners, normal };
-                let (share, by_rising, by_falling) = tile.share(&self.point);
-                if share < 2.0 * NARROW {
+                let mut tile = Narrow { corners, normal: sheet.dv[id].cross(sheet.du[id]).as_vec3a() };
+                // Most tiles are wide, and need no quotient.
+                let length = dot(tile.normal, tile.normal).sqrt();
+                if tile.share(&self.point).0 * unit < 2.0 * NARROW * length {
+                    tile.normal *= unit / length.max(f32::MIN_POSITIVE);
+                    let (_, by_rising, by_falling) = tile.share(&self.point);
                     let slopes = [by_rising, by_falling, by_falling, by_rising];
                     for (i, slope) in corners.into_iter().zip(slopes) {
                         add_outer(&mut stiffness[i], slope, 4.0 * NARROW_WEIGHT);

@@ -27,7 +27,7 @@ const STEP_TILE: f32 = 0.5;
 const LAST_TURN: f64 = 0.999;
 /// Derivatives of the surface and the matrices are taken anew every so many sweeps; between them points move to first
 /// order.
-const REFRESH: u32 = 6;
+const REFRESH: u32 = 7;
 /// Largest momentum.
 const MOMENTUM: f32 = 0.85;
 /// Longest step of a sweep, in stitch heights.
