@@ -391,12 +391,13 @@ fn apart(
     tube: &shape::Tube,
     others: &[shape::Tube],
 ) -> Option<()> {
-    let own = Solid::new(&*tube.surface, [tube.start, tube.end]);
     let parent = tube.attachment.map(|attachment| attachment.parent);
-    for (index, other) in others.iter().enumerate() {
-        if parent == Some(index) {
-            continue;
-        }
+    let mut others = others.iter().enumerate().filter(|(index, _)| parent != Some(*index)).peekable();
+    if others.peek().is_none() {
+        return Some(());
+    }
+    let own = Solid::new(&*tube.surface, [tube.start, tube.end]);
+    for (_, other) in others {
         let body = Solid::new(&*other.surface, [other.start, other.end]);
         if !own.meets(&body) {
             continue;
