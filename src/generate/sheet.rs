@@ -164,6 +164,11 @@ impl Sheet {
         id
     }
 
+    /// No stitch is added from now on: what only that needs is let go.
+    pub(crate) fn close(&mut self) {
+        (self.shaped, self.steps, self.arrival) = Default::default();
+    }
+
     /// Adds the yarn's edge from one node to the next.
     pub(crate) fn course(&mut self, a: NodeId, b: NodeId) {
         self.arrival[b as usize] = self.edges.len() as u32;

@@ -170,6 +170,7 @@ impl<'s> Weaver<'s> {
                 break;
             }
         }
+        self.sheet.close();
         let first = if judge.bar < f64::INFINITY { self.options.sweeps.min(FIRST_SWEEPS) } else { 0 };
         if first > 0 {
             self.settle_all(first, judge.level);

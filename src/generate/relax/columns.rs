@@ -2,7 +2,7 @@
 //! before it, and that of the tile between it and the wale before it.
 
 use super::lanes::{Four, Matrices, Places, root};
-use super::{Scales, TINY};
+use super::{SHARES, Scales, TINY, shares};
 use crate::generate::sheet::{Edge, EdgeKind, Quad, TileKind};
 use crate::ir::NodeId;
 use glam::Vec4;
@@ -22,11 +22,11 @@ struct Wale {
     base: NodeId,
     top: NodeId,
     /// Its weight. A tile whose left wale is not the one before has a copy of that there, of no weight.
-    weight: f32,
+    weight: u8,
     /// Weight of the course to the top before.
-    course: f32,
-    /// Weight of the tile.
-    tile: f32,
+    course: u8,
+    /// Weight of the tile, in shares.
+    tile: u8,
 }
 
 /// Four wales; places count from the lowest node.
@@ -34,11 +34,23 @@ struct Wale {
 struct Block {
     base: Places,
     top: Places,
-    wale: Vec4,
-    course: Vec4,
-    tile: Vec4,
+    wale: Weights,
+    course: Weights,
+    /// In shares.
+    tile: Weights,
     /// What the tile pulls with, good for a few sweeps: see [`Columns::stiffen`].
     slant: Vec4,
+}
+
+/// Weights of four: a byte each, for the blocks of a large part outweigh its nodes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Weights([u8; 4]);
+
+impl Weights {
+    #[inline]
+    fn get(self) -> Vec4 {
+        Vec4::from_array(self.0.map(f32::from))
+    }
 }
 
 /// What is not between neighbors: steps, courses of a first row, turns.
@@ -55,7 +67,6 @@ impl Columns {
         edges: &[Edge],
         quads: &[Quad],
         first: usize,
-        scales: &Scales,
         loose: &mut Loose,
     ) -> usize {
         loose.edges.clear();
@@ -77,14 +88,14 @@ impl Columns {
                 }
                 continue;
             }
-            let mut own = Wale { base: edge.a, top: edge.b, weight: 1.0, ..Wale::default() };
+            let mut own = Wale { base: edge.a, top: edge.b, weight: 1, ..Wale::default() };
             while let Some(quad) = quads.next_if(|quad| is_turn(quad) || spans(quad, edge)) {
                 if is_turn(quad) {
                     loose.turns.push(*quad);
                     continue;
                 }
                 let [base, _, top, _] = quad.corners;
-                own.tile = scales.tile(quad.kind);
+                own.tile = shares(quad.kind);
                 if (before.base, before.top) != (base, top) {
                     before = Wale { base, top, ..Wale::default() };
                     self.wales.push(before);
@@ -94,7 +105,7 @@ impl Columns {
             }
             if let Some(course) = course.take() {
                 if course.b == own.top && course.a == before.top {
-                    own.course = 1.0;
+                    own.course = 1;
                 } else {
                     loose.edges.push(*course);
                 }
@@ -112,7 +123,7 @@ impl Columns {
         }
         self.blocks.clear();
         self.blocks.extend(self.wales.as_chunks().0.iter().map(|wales: &[Wale; 4]| {
-            let weights = |weight: fn(&Wale) -> f32| Vec4::from_array(wales.each_ref().map(weight));
+            let weights = |weight: fn(&Wale) -> u8| Weights(wales.each_ref().map(weight));
             Block {
                 base: Places::new(wales.map(|wale| wale.base.saturating_sub(low))),
                 top: Places::new(wales.map(|wale| wale.top.saturating_sub(low))),
@@ -132,12 +143,12 @@ impl Columns {
     pub(super) fn tiles(&self) -> impl Iterator<Item = [usize; 4]> {
         let wales = self.blocks.iter().flat_map(|block| {
             let places = block.base.each.into_iter().zip(block.top.each);
-            places.zip(block.tile.to_array()).map(|((base, top), tile)| (base as usize, top as usize, tile))
+            places.zip(block.tile.0).map(|((base, top), tile)| (base as usize, top as usize, tile))
         });
-        let before = std::iter::once((0, 0, 0.0)).chain(wales.clone());
+        let before = std::iter::once((0, 0, 0)).chain(wales.clone());
         before
             .zip(wales)
-            .filter(|(_, (.., tile))| *tile > 0.0)
+            .filter(|(_, (.., tile))| *tile > 0)
             .map(|((b0, t0, _), (b1, t1, _))| [b0, b1, t0, t1])
     }
 
@@ -152,10 +163,10 @@ impl Columns {
             let (b0, t0) = (b1.behind(bases), t1.behind(tops));
             (bases, tops) = (b1, t1);
             let up = t1 - b1;
-            let up = up.times(block.wale * height * (height - reciprocal_root(up.dot(up).max(tiny))));
+            let up = up.times(block.wale.get() * height * (height - reciprocal_root(up.dot(up).max(tiny))));
             let along = t1 - t0;
             let along =
-                along.times(block.course * width * (width - reciprocal_root(along.dot(along).max(tiny))));
+                along.times(block.course.get() * width * (width - reciprocal_root(along.dot(along).max(tiny))));
             let (rising, falling) = (t1 - b0, t0 - b1);
             let pull = block.slant * (rising.dot(rising) - falling.dot(falling));
             let (rising, falling) = (rising.times(pull), falling.times(pull));
@@ -182,6 +193,7 @@ impl Columns {
     pub(super) fn stiffen(&mut self, point: &[Vec4], stiffness: &mut [[Vec4; 2]], scales: &Scales) {
         let tiny = Vec4::splat(TINY);
         let half = Vec4::splat(0.5);
+        let share = Vec4::splat(scales.squareness / f32::from(SHARES));
         let (height, width) = (scales.height, scales.width);
         // Two nodes share the residual of an edge, four that of a tile: that many times the outer product majorizes, so that
         // no line search is needed.
@@ -207,14 +219,14 @@ impl Columns {
             let (b0, t0) = (b1.behind(bases), t1.behind(tops));
             (bases, tops) = (b1, t1);
             let up = t1 - b1;
-            let up = Matrices::outer(up, block.wale * by_height / up.dot(up).max(tiny));
+            let up = Matrices::outer(up, block.wale.get() * by_height / up.dot(up).max(tiny));
             let along = t1 - t0;
-            let along = Matrices::outer(along, block.course * by_width / along.dot(along).max(tiny));
+            let along = Matrices::outer(along, block.course.get() * by_width / along.dot(along).max(tiny));
             let (rising, falling) = (t1 - b0, t0 - b1);
             let (middle, across) = ((rising + falling).times(half), (rising - falling).times(half));
             let length = |d: Four, least: Vec4| root(d.dot(d)).max(least);
             let slant = half / (length(middle, least_up) * length(across, least_across));
-            let square = block.tile * slant * slant;
+            let square = block.tile.get() * share * slant * slant;
             block.slant = half * square;
             let weight = square * Vec4::splat(4.0);
             let (rising, falling) = (Matrices::outer(rising, weight), Matrices::outer(falling, weight));

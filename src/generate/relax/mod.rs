@@ -21,8 +21,8 @@ use lanes::{Four, Matrices, root};
 /// Weight of the soft links that close the steps at short-row ends, and their rest length in stitch widths.
 const STEP_WEIGHT: f32 = 0.2;
 const STEP_REST: f32 = 0.9;
-/// Tiles across a step count half.
-const STEP_TILE: f32 = 0.5;
+/// So many shares have tiles; those across a step count half.
+const SHARES: u8 = 2;
 /// The last turn of tops begins a hair behind a whole turn before the end.
 const LAST_TURN: f64 = 0.999;
 /// Derivatives of the surface and the matrices are taken anew every so many sweeps; between them points move to first
@@ -78,8 +78,14 @@ struct Scales {
 impl Scales {
     #[inline]
     fn tile(&self, kind: TileKind) -> f32 {
-        if kind == TileKind::Step { STEP_TILE * self.squareness } else { self.squareness }
+        self.squareness * (f32::from(shares(kind)) / f32::from(SHARES))
     }
+}
+
+/// The weight of a tile in shares.
+#[inline]
+fn shares(kind: TileKind) -> u8 {
+    if kind == TileKind::Step { SHARES / 2 } else { SHARES }
 }
 
 /// Buffers that live as long as the generation, so that a window costs no allocation.
@@ -106,21 +112,20 @@ struct Nodes {
     dv: Four,
     /// Inverse of each node's matrix in (u, v): uu, uv, vv.
     inverse: [Vec4; 3],
-    /// The way since the last look at the surface, and its bounds along u.
+    /// Where along u they were at the last look at the surface, and the way since then.
+    start: Vec4,
     way: [Vec4; 2],
-    range: [Vec4; 2],
     /// The way of the last sweep.
     last: [Vec4; 2],
 }
 
 impl Nodes {
     #[inline]
-    fn begin(&mut self, du: [Vec4; 4], dv: [Vec4; 4], u: &[f64; 4], low: f64, high: f64) {
+    fn begin(&mut self, du: [Vec4; 4], dv: [Vec4; 4], u: &[f64; 4]) {
         self.du = Four::new(du);
         self.dv = Four::new(dv);
         self.way = [Vec4::ZERO; 2];
-        let to = |bound: f64| Vec4::from_array(u.map(|u| (bound - u) as f32));
-        self.range = [to(low).min(Vec4::ZERO), to(high).max(Vec4::ZERO)];
+        self.start = Vec4::from_array(u.map(|u| u as f32));
     }
 }
 
@@ -178,11 +183,11 @@ impl Relaxer {
             height: sheet.height as f32,
             squareness: effort.squareness as f32,
         };
-        let low = self.columns.take(edges, quads, first, &scales, &mut self.loose);
+        let low = self.columns.take(edges, quads, first, &mut self.loose);
         let span = Span { low, first, count: sheet.len() - first, origin: sheet.point[first] };
         self.nodes.clear();
         self.nodes.resize(span.count.div_ceil(4), Nodes::default());
-        self.take(sheet, &span, &ends);
+        self.take(sheet, &span);
         for sweep in 0..effort.sweeps {
             if sweep.is_multiple_of(REFRESH) {
                 if sweep > 0 {
@@ -190,7 +195,7 @@ impl Relaxer {
                     for i in first..sheet.len() {
                         look(surface, sheet, i);
                     }
-                    self.take(sheet, &span, &ends);
+                    self.take(sheet, &span);
                 }
                 self.stiffen(sheet, &span, &scales, &ends);
             }
@@ -200,7 +205,7 @@ impl Relaxer {
             self.pull_loose(&span, &scales, &ends);
             let next = sweep as f32 + 1.0;
             let momentum = if sweep + 1 == effort.sweeps { 0.0 } else { MOMENTUM.min(next / (next + 3.0)) };
-            self.step(span.fringe(), momentum, LONGEST * scales.height);
+            self.step(span.fringe(), momentum, LONGEST * scales.height, ends.range);
         }
         self.commit(sheet, &span, ends.range);
         let settled = first.max(exact).min(sheet.len());
@@ -213,22 +218,21 @@ impl Relaxer {
     }
 
     /// Takes up points and derivatives; the nodes have gone no way yet.
-    fn take(&mut self, sheet: &Sheet, span: &Span, ends: &Ends<'_>) {
+    fn take(&mut self, sheet: &Sheet, span: &Span) {
         self.point.clear();
         self.point.extend(sheet.point[span.low..].iter().map(|point| span.local(*point)));
         self.point.resize(span.fringe() + 4 * self.nodes.len(), Vec4::ZERO);
-        let [low, high] = ends.range;
         let vector = |d: &DVec3| d.as_vec3().extend(0.0);
         let free = sheet.du[span.first..].chunks(4).zip(sheet.dv[span.first..].chunks(4));
         let us = sheet.u[span.first..].chunks(4);
         for ((nodes, (du, dv)), u) in self.nodes.iter_mut().zip(free).zip(us) {
             if let (Ok(du), Ok(dv), Ok(u)) = (<&[_; 4]>::try_from(du), <&[_; 4]>::try_from(dv), u.try_into())
             {
-                nodes.begin(du.each_ref().map(vector), dv.each_ref().map(vector), u, low, high);
+                nodes.begin(du.each_ref().map(vector), dv.each_ref().map(vector), u);
             } else {
                 let padded = |d: &[DVec3]| std::array::from_fn(|lane| d.get(lane).map_or(Vec4::ZERO, vector));
-                let u = std::array::from_fn(|lane| u.get(lane).copied().unwrap_or(low));
-                nodes.begin(padded(du), padded(dv), &u, low, high);
+                let u = std::array::from_fn(|lane| u.get(lane).copied().unwrap_or_default());
+                nodes.begin(padded(du), padded(dv), &u);
             }
         }
     }
@@ -275,12 +279,14 @@ impl Relaxer {
     }
 
     /// One damped Newton step per node in its own (u, v), and its momentum; points follow to first order.
-    fn step(&mut self, fringe: usize, momentum: f32, longest: f32) {
+    fn step(&mut self, fringe: usize, momentum: f32, longest: f32, range: [f64; 2]) {
+        let range = range.map(|u| Vec4::splat(u as f32));
         let (momentum, longest) = (Vec4::splat(momentum), Vec4::splat(longest * longest));
         let points = self.point[fringe..].chunks_exact_mut(4);
         let gradients = self.gradient[fringe..].chunks_exact(4);
         for ((nodes, points), gradients) in self.nodes.iter_mut().zip(points).zip(gradients) {
-            let Nodes { du, dv, inverse: [uu, uv, vv], way: [u, v], range: [low, high], last } = *nodes;
+            let Nodes { du, dv, inverse: [uu, uv, vv], start, way: [u, v], last } = *nodes;
+            let (low, high) = ((range[0] - start).min(Vec4::ZERO), (range[1] - start).max(Vec4::ZERO));
             let gradient = Four::new([gradients[0], gradients[1], gradients[2], gradients[3]]);
             let (gu, gv) = (gradient.dot(du), gradient.dot(dv));
             let (x, y) = (-(uu * gu + uv * gv), -(uv * gu + vv * gv));
