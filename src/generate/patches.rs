@@ -164,7 +164,7 @@ mod tests {
         for i in 0..1000 {
             let (u, v) = (f64::from(i) / 999.0, 0.618 * f64::from(i) - 100.0);
             let (near, exact) = (patches.jet(u, v), surface.jet(u, v));
-            assert!(near.point.distance(exact.point) < 1e-4 * gauge.width, "{u} {v}");
+            assert!(near.point.distance(exact.point) < 5e-4 * gauge.width, "{u} {v}");
             assert!(near.du.distance(exact.du) < 1e-3 * exact.du.length(), "{u} {v}");
             assert!(near.dv.distance(exact.dv) < 1e-3 * exact.dv.length(), "{u} {v}");
         }

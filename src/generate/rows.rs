@@ -105,16 +105,14 @@ fn table(surface: &dyn ParametricSurface, height: f64, mean_share: f64) -> Optio
     let mut knots = vec![0.0];
     let mut u = 0.0;
     let mut ahead = [0.0_f64; AROUND];
-    // Half the row before leads to about the middle of the next.
-    let mut last = height / look(0.0).0;
     while u < 1.0 {
-        let (spacing, speeds) = look((u + 0.5 * last).min(1.0));
+        let first = height / look(u).0;
+        let (spacing, speeds) = look((u + 0.5 * first).min(1.0));
         let step = height / spacing;
         if !step.is_finite() || step <= 0.0 || knots.len() > MAX_ROWS {
             return None;
         }
         u += step.min(1.0);
-        last = step;
         for (ahead, speed) in ahead.iter_mut().zip(speeds) {
             *ahead = (*ahead + 1.0 - speed / spacing).max(0.0);
         }

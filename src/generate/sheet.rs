@@ -166,7 +166,7 @@ impl Sheet {
 
     /// No stitch is added from now on: what only that needs is let go.
     pub(crate) fn close(&mut self) {
-        (self.shaped, self.steps, self.arrival) = Default::default();
+        (self.steps, self.arrival) = Default::default();
     }
 
     /// Adds the yarn's edge from one node to the next.
