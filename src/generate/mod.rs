@@ -45,7 +45,7 @@ const OVERHANG: [f64; 2] = [-0.02, 1.06];
 const POLE_DISTANCE: f64 = 0.3;
 
 /// Rows by which a given first row counts as higher, for each turn that a try would turn another one by.
-const LIFT: f64 = 4.0;
+const LIFT: f64 = 1.0;
 
 /// Drift, in turns, that is worth a word.
 const MUCH_DRIFT: f64 = 0.75;

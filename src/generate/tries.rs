@@ -8,11 +8,12 @@ use super::score::Score;
 /// Parts of more stitches get one try, or, where it has inverted tiles, a few: the luck of single shapings evens out there.
 const MOST_STITCHES: f64 = 5_000.0;
 const MOST_RESCUED: f64 = 50_000.0;
-/// A score that needs no further try.
+/// A score that needs no further try, and one that needs none beyond those asked for.
 const GOOD: f64 = 2.1;
+const POOR: f64 = 2.5;
 /// A try whose score is so much worse than the best before its rows have settled is given up.
 const BAR: f64 = 0.1;
-/// Further tries for parts on which all have inverted tiles.
+/// Further tries for parts on which all are poor, or have inverted tiles.
 const RESCUES: usize = 8;
 /// Sweeps of a rescue: inverted tiles open slowly.
 const RESCUE_SWEEPS: u32 = 3;
@@ -57,17 +58,16 @@ const CHANGES: [Change; 12] = [
 ];
 
 /// The options of a try, and how far around the tube its helix begins.
-fn variant(base: &Options, index: usize) -> (Options, f64, bool) {
+fn variant(base: &Options, index: usize, rescue: bool) -> (Options, f64) {
     let change = &CHANGES[index % CHANGES.len()];
     let mut options = base.clone();
     options.activation *= change.activation;
     options.tolerance = (options.tolerance * change.tolerance).min(options.activation);
     options.max_short_row *= change.longest;
-    let rescue = index >= base.tries as usize;
     if rescue {
         options.sweeps = options.sweeps.saturating_mul(RESCUE_SWEEPS);
     }
-    (options, change.turn, rescue)
+    (options, change.turn)
 }
 
 /// The best of the tries that `lay` makes; `None` when none comes to an end. Where the first row is `given`, all tries
@@ -85,12 +85,14 @@ pub(super) fn best(
         let enough = match index < tries {
             true if given => 0.0,
             true => GOOD,
-            false => f64::MAX,
+            false => POOR,
         };
         if best.as_ref().is_some_and(|(score, _)| score.inverted == 0 && score.total <= enough) {
             break;
         }
-        let (options, turn, rescue) = variant(options, index);
+        let inverted = best.as_ref().is_none_or(|(score, _)| score.inverted > 0);
+        let rescue = index >= tries && inverted;
+        let (options, turn) = variant(options, index, rescue);
         let bar = match &best {
             Some((score, _)) if score.inverted == 0 => score.total + BAR,
             _ => f64::INFINITY,
