@@ -62,13 +62,7 @@ pub(super) struct Loose {
 
 impl Columns {
     /// Takes up the edges and tiles from a mark on. Returns the lowest of their nodes and of `first`.
-    pub(super) fn take(
-        &mut self,
-        edges: &[Edge],
-        quads: &[Quad],
-        first: usize,
-        loose: &mut Loose,
-    ) -> usize {
+    pub(super) fn take(&mut self, edges: &[Edge], quads: &[Quad], first: usize, loose: &mut Loose) -> usize {
         loose.edges.clear();
         loose.turns.clear();
         self.wales.clear();
@@ -165,8 +159,8 @@ impl Columns {
             let up = t1 - b1;
             let up = up.times(block.wale.get() * height * (height - reciprocal_root(up.dot(up).max(tiny))));
             let along = t1 - t0;
-            let along =
-                along.times(block.course.get() * width * (width - reciprocal_root(along.dot(along).max(tiny))));
+            let along = along
+                .times(block.course.get() * width * (width - reciprocal_root(along.dot(along).max(tiny))));
             let (rising, falling) = (t1 - b0, t0 - b1);
             let pull = block.slant * (rising.dot(rising) - falling.dot(falling));
             let (rising, falling) = (rising.times(pull), falling.times(pull));
