@@ -75,7 +75,7 @@ impl Default for Options {
             window: 3,
             window_sweeps: 6,
             sweeps: 14,
-            squareness: 0.25,
+            squareness: 0.28,
             tries: 4,
             symmetric: true,
             hand: None,

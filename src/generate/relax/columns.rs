@@ -7,6 +7,10 @@ use crate::generate::sheet::{Edge, EdgeKind, Quad, TileKind};
 use crate::ir::NodeId;
 use glam::Vec4;
 
+/// In the final sweeps a strain pulls more than in proportion, so that few edges are far off: by this times its square,
+/// and at most by so much.
+const TAIL_WEIGHT: f32 = 20.0;
+const TAIL_MOST: f32 = 0.4;
 /// So many wales are not kept beside their blocks.
 const MANY: usize = 1 << 16;
 
@@ -146,9 +150,9 @@ impl Columns {
             .map(|((b0, t0, _), (b1, t1, _))| [b0, b1, t0, t1])
     }
 
-    /// Sums the pulls of all wales, courses and tiles at their nodes.
-    pub(super) fn pull(&self, point: &[Vec4], gradient: &mut [Vec4], scales: &Scales) {
-        let tiny = Vec4::splat(TINY);
+    /// Sums the pulls of all wales, courses and tiles at their nodes. With `TAIL`, long and short edges pull more than in
+    /// proportion.
+    pub(super) fn pull<const TAIL: bool>(&self, point: &[Vec4], gradient: &mut [Vec4], scales: &Scales) {
         let (height, width) = (Vec4::splat(scales.height.recip()), Vec4::splat(scales.width.recip()));
         let (mut bases, mut tops) = (Four::default(), Four::default());
         let mut last = Pending::<Four>::default();
@@ -157,10 +161,9 @@ impl Columns {
             let (b0, t0) = (b1.behind(bases), t1.behind(tops));
             (bases, tops) = (b1, t1);
             let up = t1 - b1;
-            let up = up.times(block.wale.get() * height * (height - reciprocal_root(up.dot(up).max(tiny))));
+            let up = up.times(block.wale.get() * tension::<TAIL>(up, height));
             let along = t1 - t0;
-            let along = along
-                .times(block.course.get() * width * (width - reciprocal_root(along.dot(along).max(tiny))));
+            let along = along.times(block.course.get() * tension::<TAIL>(along, width));
             let (rising, falling) = (t1 - b0, t0 - b1);
             let pull = block.slant * (rising.dot(rising) - falling.dot(falling));
             let (rising, falling) = (rising.times(pull), falling.times(pull));
@@ -184,15 +187,18 @@ impl Columns {
     ///
     /// Middle lines of a tile are half the sum and half the difference of its diagonals, so their product is a quarter of the
     /// difference of the squared diagonals: no root, no quotient.
-    pub(super) fn stiffen(&mut self, point: &[Vec4], stiffness: &mut [[Vec4; 2]], scales: &Scales) {
-        let tiny = Vec4::splat(TINY);
+    pub(super) fn stiffen<const TAIL: bool>(
+        &mut self,
+        point: &[Vec4],
+        stiffness: &mut [[Vec4; 2]],
+        scales: &Scales,
+    ) {
         let half = Vec4::splat(0.5);
         let share = Vec4::splat(scales.squareness / f32::from(SHARES));
         let (height, width) = (scales.height, scales.width);
         // Two nodes share the residual of an edge, four that of a tile: that many times the outer product majorizes, so that
         // no line search is needed.
-        let (by_height, by_width) =
-            (Vec4::splat(2.0 / (height * height)), Vec4::splat(2.0 / (width * width)));
+        let (by_height, by_width) = (Vec4::splat(height.recip()), Vec4::splat(width.recip()));
         let (least_up, least_across) = (Vec4::splat(0.3 * height), Vec4::splat(0.2 * width));
         let (mut bases, mut tops) = (Four::default(), Four::default());
         let mut last = Pending::<Matrices>::default();
@@ -213,9 +219,9 @@ impl Columns {
             let (b0, t0) = (b1.behind(bases), t1.behind(tops));
             (bases, tops) = (b1, t1);
             let up = t1 - b1;
-            let up = Matrices::outer(up, block.wale.get() * by_height / up.dot(up).max(tiny));
+            let up = Matrices::outer(up, block.wale.get() * stiffness_of::<TAIL>(up, by_height));
             let along = t1 - t0;
-            let along = Matrices::outer(along, block.course.get() * by_width / along.dot(along).max(tiny));
+            let along = Matrices::outer(along, block.course.get() * stiffness_of::<TAIL>(along, by_width));
             let (rising, falling) = (t1 - b0, t0 - b1);
             let (middle, across) = ((rising + falling).times(half), (rising - falling).times(half));
             let length = |d: Four, least: Vec4| root(d.dot(d)).max(least);
@@ -249,7 +255,27 @@ fn spans(quad: &Quad, wale: &Edge) -> bool {
     quad.corners[1] == wale.a && quad.corners[3] == wale.b
 }
 
+/// What the vectors of edges pull with, by one over their rest length: the derivative of half the squared strain by the
+/// vector is so many times that.
 #[inline]
-fn reciprocal_root(square: Vec4) -> Vec4 {
-    Vec4::ONE / root(square)
+fn tension<const TAIL: bool>(edge: Four, rest: Vec4) -> Vec4 {
+    let square = edge.dot(edge).max(Vec4::splat(TINY));
+    let by_length = Vec4::ONE / root(square);
+    let tension = rest * (rest - by_length);
+    if TAIL { tension * (Vec4::ONE + tail(square * by_length * rest)) } else { tension }
+}
+
+/// Bounds the second derivative of the same: so many times the outer product, for each of two nodes.
+#[inline]
+fn stiffness_of<const TAIL: bool>(edge: Four, rest: Vec4) -> Vec4 {
+    let square = edge.dot(edge).max(Vec4::splat(TINY));
+    let stiffness = Vec4::splat(2.0) * rest * rest / square;
+    if TAIL { stiffness * (Vec4::ONE + Vec4::splat(3.0) * tail(root(square) * rest)) } else { stiffness }
+}
+
+/// How much more than in proportion edges of these lengths, in rest lengths, pull.
+#[inline]
+fn tail(length: Vec4) -> Vec4 {
+    let strain = length - Vec4::ONE;
+    (Vec4::splat(TAIL_WEIGHT) * strain * strain).min(Vec4::splat(TAIL_MOST))
 }

@@ -201,7 +201,11 @@ impl Relaxer {
             }
             self.gradient.clear();
             self.gradient.resize(self.point.len(), Vec4::ZERO);
-            self.columns.pull(&self.point, &mut self.gradient, &scales);
+            if ends.level.is_some() {
+                self.columns.pull::<true>(&self.point, &mut self.gradient, &scales);
+            } else {
+                self.columns.pull::<false>(&self.point, &mut self.gradient, &scales);
+            }
             self.pull_loose(&span, &scales, &ends);
             let next = sweep as f32 + 1.0;
             let momentum = if sweep + 1 == effort.sweeps { 0.0 } else { MOMENTUM.min(next / (next + 3.0)) };
@@ -258,7 +262,11 @@ impl Relaxer {
         matrices.clear();
         matrices.resize(2 * self.point.len(), Vec4::ZERO);
         let stiffness = matrices.as_chunks_mut::<2>().0;
-        self.columns.stiffen(&self.point, stiffness, scales);
+        if ends.level.is_some() {
+            self.columns.stiffen::<true>(&self.point, stiffness, scales);
+        } else {
+            self.columns.stiffen::<false>(&self.point, stiffness, scales);
+        }
         self.stiffen_loose(stiffness, sheet, span, scales, ends);
         let own = stiffness[span.fringe()..].chunks_exact(4);
         for (nodes, own) in self.nodes.iter_mut().zip(own) {
