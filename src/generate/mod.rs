@@ -166,8 +166,8 @@ fn lay_on(
     sink.stage("stitches");
     let most = (3.0 * expected) as usize + 10_000;
     let laid = if even { Ground::new(surface, ends, &rows, gauge, options).lay_evenly(sink) } else { None };
-    let laid = laid.map(|(sheet, start)| Laid { sheet, start, turn: turned.by, lifted: None });
-    let Some(Laid { mut sheet, start, turn, lifted }) = laid.or_else(|| {
+    let laid = laid.map(|(sheet, start)| Laid { sheet, start, spread: 0.0, turn: turned.by, lifted: None });
+    let Some(Laid { mut sheet, start, turn, lifted, .. }) = laid.or_else(|| {
         tries::best(options, expected, first.is_some(), |options, turn, judge| {
             // Where the place of the first row is given, its height is varied.
             let lifted = first.and_then(|_| Rows::new(surface, [leads[0] + LIFT * turn, leads[1]], gauge));
@@ -177,8 +177,8 @@ fn lay_on(
             for foot in first.unwrap_or_default() {
                 ground.range[0] = ground.range[0].min(foot.u);
             }
-            let (sheet, start) = ground.weave(most, judge, sink)?;
-            Some(Laid { sheet, start, turn: turned.by, lifted })
+            let (sheet, start, spread) = ground.weave(most, judge, sink)?;
+            Some(Laid { sheet, start, spread, turn: turned.by, lifted })
         })
     }) else {
         let message =
@@ -215,6 +215,8 @@ fn warn_of(turns: f64, part: &str, sink: &mut Sink<'_>) {
 struct Laid {
     sheet: Sheet,
     start: usize,
+    /// Rows between the highest and the lowest loop of the last turn.
+    spread: f64,
     turn: f64,
     /// Other rows than planned.
     lifted: Option<Rows>,
@@ -287,8 +289,9 @@ impl<'s> Ground<'s> {
         Some((sheet, start))
     }
 
-    /// Row by row, for any surface; with the stitches of the first row. `None` when the rows run away.
-    fn weave(&self, most: usize, judge: Judge, sink: &Sink<'_>) -> Option<(Sheet, usize)> {
+    /// Row by row, for any surface; with the stitches of the first row, and the rows between the highest and the lowest loop
+    /// of the last turn. `None` when the rows run away.
+    fn weave(&self, most: usize, judge: Judge, sink: &Sink<'_>) -> Option<(Sheet, usize, f64)> {
         let Self { surface, rows, options, .. } = *self;
         let mut sheet = Sheet::new(self.gauge);
         if let Some(first) = self.first {
@@ -304,7 +307,10 @@ impl<'s> Ground<'s> {
         let start = sheet.len();
         let mut weaver = Weaver::new(surface, rows, options, sheet, self.poles[0], self.range, most);
         match weaver.run(judge, |done, total| sink.step(done, total)) {
-            Outcome::Done => Some((weaver.sheet, start)),
+            Outcome::Done => {
+                let spread = weaver.spread();
+                Some((weaver.sheet, start, spread))
+            }
             Outcome::Runaway | Outcome::Outdone => None,
         }
     }

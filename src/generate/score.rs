@@ -12,6 +12,9 @@ const BIAS: f64 = 100.0;
 /// Words a stitch that are usual, and their weight with full ease.
 const USUAL_WORDS: f64 = 0.12;
 const WORDS: f64 = 0.6;
+/// Rows between the highest and the lowest loop of the last turn that are free, and the price of one more.
+const LEVEL_FREE: f64 = 0.75;
+const LEVEL: f64 = 0.3;
 /// Price of an inverted tile as a share of all tiles, and of one at all.
 const INVERTED: f64 = 40.0;
 const ANY_INVERTED: f64 = 0.5;
@@ -39,6 +42,11 @@ impl Score {
         let words = changes(&sheet.main) + sheet.short_rows.iter().map(of).sum::<usize>();
         let share = words as f64 / sheet.len().max(1) as f64;
         Self { total: self.total + ease * WORDS * share / USUAL_WORDS, ..self }
+    }
+
+    /// The same with the price of a last turn that lies so many rows from even.
+    pub(super) fn with_level(self, spread: f64) -> Self {
+        Self { total: self.total + LEVEL * (spread - LEVEL_FREE).max(0.0), ..self }
     }
 
     fn of_fit(sheet: &Sheet) -> Self {

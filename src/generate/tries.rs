@@ -98,7 +98,7 @@ pub(super) fn best(
             _ => f64::INFINITY,
         };
         let Some(laid) = lay(&options, turn, Judge { bar, level: !rescue }) else { continue };
-        let score = Score::of(&laid.sheet, options.ease());
+        let score = Score::of(&laid.sheet, options.ease()).with_level(laid.spread);
         if best.as_ref().is_none_or(|(so_far, _)| so_far.total.is_nan() || score.total < so_far.total - 1e-9)
         {
             best = Some((score, laid));

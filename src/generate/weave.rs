@@ -183,6 +183,14 @@ impl<'s> Weaver<'s> {
         Outcome::Done
     }
 
+    /// Rows between the highest and the lowest open loop, each against its place on the helix.
+    pub(crate) fn spread(&self) -> f64 {
+        let off =
+            self.ring.iter().map(|id| *id as usize).map(|i| self.sheet.v[i] - self.rows.tau(self.sheet.u[i]));
+        let (low, high) = off.fold((f64::MAX, f64::MIN), |(low, high), off| (low.min(off), high.max(off)));
+        (high - low).max(0.0)
+    }
+
     /// Missing height at a node against its place on the helix, in stitch heights.
     fn missing_at(&self, id: NodeId) -> f64 {
         let i = id as usize;
