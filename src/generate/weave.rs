@@ -22,12 +22,12 @@ use std::ops::Range;
 /// Neighbors on either side that give the course direction at a base, at most; never more than a sixth of a turn away.
 const REACH: usize = 3;
 /// How far a stitch stretches or shrinks toward the level of its neighbors, per stitch height of difference, and at most.
-const LEVELING: f64 = 0.83;
-const LEVELING_MOST: f64 = 0.3;
+const LEVELING: f64 = 0.858;
+const LEVELING_MOST: f64 = 0.313;
 /// Missing height by which the ring's start must lag behind its most advanced place to move the seam there.
 const SEAM: f64 = 0.4;
 /// Added to missing heights before short rows are planned: it is better to be a little early.
-const EAGER: f64 = 0.284;
+const EAGER: f64 = 0.328;
 /// Weight of square tiles while rows settle.
 const WINDOW_SQUARENESS: f64 = 0.675;
 /// Price of a short-row end right over one of the row before, its reach in stitches, and how fast it fades per batch.

@@ -9,8 +9,8 @@ use glam::Vec4;
 
 /// In the final sweeps a strain pulls more than in proportion, so that few edges are far off: by this times its square,
 /// and at most by so much.
-const TAIL_WEIGHT: f32 = 20.0;
-const TAIL_MOST: f32 = 0.4;
+const TAIL_WEIGHT: f32 = 17.7;
+const TAIL_MOST: f32 = 0.198;
 /// So many wales are not kept beside their blocks.
 const MANY: usize = 1 << 16;
 

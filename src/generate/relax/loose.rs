@@ -11,9 +11,9 @@ const NARROW_WEIGHT: f32 = 2.0;
 
 /// Pull of the last turn of tops toward its level: its weight, how much higher than the helix that lies, how far a top may
 /// be off it for nothing, how much farther the pull grows, in this slack, and from where on it is no use, in rows.
-const LEVEL_WEIGHT: f64 = 2.5;
+const LEVEL_WEIGHT: f64 = 2.8;
 const LEVEL_SHIFT: f64 = 0.15;
-const LEVEL_SLACK: f64 = 0.3;
+const LEVEL_SLACK: f64 = 0.29;
 const LEVEL_CAP: f32 = 1.2;
 const LEVEL_FAR: f64 = 1.0;
 
