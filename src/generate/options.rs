@@ -117,9 +117,9 @@ impl Options {
         match self.preset {
             Preset::Std => self.clone(),
             Preset::Fast => Self {
-                window: self.window.min(3),
-                window_sweeps: self.window_sweeps.min(4),
-                sweeps: self.sweeps.min(8),
+                window: self.window.min(2),
+                window_sweeps: self.window_sweeps.min(2),
+                sweeps: self.sweeps.min(6),
                 tries: 1,
                 ..self.clone()
             },

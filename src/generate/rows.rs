@@ -8,6 +8,7 @@ use crate::shape::{End, Jet, ParametricSurface, girth};
 const MEAN_SHARE: f64 = 0.2;
 /// Samples around a row.
 const AROUND: usize = 24;
+const FEW: usize = 8;
 /// Most rows that one side may be ahead at the end; in rounds of more than so many stitches the share of the mean shrinks
 /// for it. Shorter rounds have no room for the short rows that this opens.
 const MOST_AHEAD: f64 = 1.15;
@@ -95,19 +96,21 @@ fn mean_girth(surface: &dyn ParametricSurface, knots: &[f64]) -> f64 {
 /// end: where rows lie closer than their spacing it gains on them, and short rows on the other side cannot hold it back; where
 /// they lie farther apart, short rows keep it level. `None` when the surface has no length.
 fn table(surface: &dyn ParametricSurface, height: f64, mean_share: f64) -> Option<(Vec<f64>, f64)> {
-    let look = |u: f64| {
-        let speeds: [f64; AROUND] =
-            std::array::from_fn(|k| row_speed(&surface.jet(inside(u), k as f64 / AROUND as f64)));
+    let speed = |u: f64, k: usize| row_speed(&surface.jet(inside(u), k as f64 / AROUND as f64));
+    let spacing = |speeds: &[f64]| {
         let least = speeds.iter().copied().fold(f64::MAX, f64::min);
-        let mean = speeds.iter().sum::<f64>() / AROUND as f64;
-        ((1.0 - mean_share) * least + mean_share * mean, speeds)
+        let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
+        (1.0 - mean_share) * least + mean_share * mean
     };
     let mut knots = vec![0.0];
     let mut u = 0.0;
     let mut ahead = [0.0_f64; AROUND];
     while u < 1.0 {
-        let first = height / look(u).0;
-        let (spacing, speeds) = look((u + 0.5 * first).min(1.0));
+        // A few looks lead to the middle of the row, where all are taken.
+        let few: [f64; FEW] = std::array::from_fn(|k| speed(u, k * (AROUND / FEW)));
+        let middle = (u + 0.5 * height / spacing(&few)).min(1.0);
+        let speeds: [f64; AROUND] = std::array::from_fn(|k| speed(middle, k));
+        let spacing = spacing(&speeds);
         let step = height / spacing;
         if !step.is_finite() || step <= 0.0 || knots.len() > MAX_ROWS {
             return None;

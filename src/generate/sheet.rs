@@ -195,8 +195,8 @@ impl Sheet {
         Jet { point: self.point[i], du: self.du[i], dv: self.dv[i] }
     }
 
-    /// From a node, `distance` in the direction `direction` along the surface: a midpoint step, then one correction so
-    /// that the chord has the length (the last bit of it to first order; the relaxation settles the rest).
+    /// From a node, `distance` in the direction `direction` along the surface: a midpoint step. The surface is looked up
+    /// in the middle only; derivatives go on from there as they came, and the relaxation settles the rest.
     pub(crate) fn walk(
         &self,
         surface: &dyn ParametricSurface,
@@ -211,15 +211,12 @@ impl Sheet {
         let normal = middle.du.cross(middle.dv).normalize_or_zero();
         let heading = (direction - normal * direction.dot(normal)).normalize_or(direction);
         let (x, y) = pull_back(middle.du, middle.dv, heading * distance);
-        let reached = surface.jet(self.u[i] + x, self.v[i] + y);
-        let chord = reached.point.distance(self.point[i]);
-        let stretch = if chord > 1e-9 { (distance / chord).clamp(0.5, 2.0) } else { 1.0 };
         Foot {
-            u: self.u[i] + x * stretch,
-            v: self.v[i] + y * stretch,
-            point: self.point[i] + (reached.point - self.point[i]) * stretch,
-            du: reached.du,
-            dv: reached.dv,
+            u: self.u[i] + x,
+            v: self.v[i] + y,
+            point: self.point[i] + middle.du * x + middle.dv * y,
+            du: middle.du * 2.0 - self.du[i],
+            dv: middle.dv * 2.0 - self.dv[i],
             along,
         }
     }

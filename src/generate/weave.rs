@@ -207,8 +207,11 @@ impl<'s> Weaver<'s> {
         if self.part_batch || n < 6 || self.marks.is_empty() {
             return n;
         }
-        let missing: Vec<f64> = self.ring.iter().map(|id| self.missing_at(*id)).collect();
-        let smooth = |i: usize| (0..5).map(|k| missing[(i + n + k - 2) % n]).sum::<f64>() / 5.0;
+        let mut missing: Vec<f64> = self.ring.iter().map(|id| self.missing_at(*id)).collect();
+        // The ring goes on around its ends.
+        missing.rotate_right(2);
+        missing.extend_from_within(..4);
+        let smooth = |i: usize| missing[i..i + 5].iter().sum::<f64>() / 5.0;
         let mut least = 0;
         for i in 1..n {
             if smooth(i) < smooth(least) - 1e-9 {
