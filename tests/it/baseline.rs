@@ -63,9 +63,10 @@ fn baseline_agrees_with_the_published_implementation() {
     }
 }
 
-/// Bounds that leave some room over the measured 2.8 to 4.6 and 6.3 to 9.2 percent.
+/// What the published algorithm leaves at twice and more; the luck of single shapings is within these bounds.
 #[test]
 fn our_stitches_keep_length_skew_and_coverage() {
+    let (mut lengths, mut skews) = (0.0, 0.0);
     for (name, width) in [("c", 2.5), ("c", 2.0), ("c", 1.5), ("d", 2.5), ("d", 2.0), ("d", 1.5)] {
         let tube = shape(name);
         let gauge = Gauge::new(width, width);
@@ -73,12 +74,15 @@ fn our_stitches_keep_length_skew_and_coverage() {
         let graph = generate(&tube, &gauge, &options, &mut Sink::new()).expect("generates");
         let measure = measure(&tube, &gauge, &graph);
         let (length, skew) = (measure.length_error.chord, measure.skew.all);
-        assert!(length.mean_abs <= 0.05, "{name} {width}: length error {}", length.mean_abs);
-        assert!(length.mean.abs() <= 0.01 && length.sd <= 0.065, "{name} {width}: {length:?}");
-        assert!(skew.mean <= 0.12, "{name} {width}: skew {}", skew.mean);
-        assert!((0.97..=1.03).contains(&measure.coverage), "{name} {width}: {}", measure.coverage);
-        assert!(measure.level.spread <= 1.0, "{name} {width}: {:?}", measure.level);
+        assert!(length.mean_abs <= 0.043 && length.p95 <= 0.12, "{name} {width}: {length:?}");
+        assert!(length.mean.abs() <= 0.005 && length.sd <= 0.06, "{name} {width}: {length:?}");
+        assert!(skew.mean <= 0.092, "{name} {width}: skew {}", skew.mean);
+        assert!((0.98..=1.02).contains(&measure.coverage), "{name} {width}: {}", measure.coverage);
+        assert!(measure.level.spread <= 0.8, "{name} {width}: {:?}", measure.level);
+        assert_eq!(measure.inverted_tiles, 0, "{name} {width}");
+        (lengths, skews) = (lengths + length.mean_abs / 6.0, skews + skew.mean / 6.0);
     }
+    assert!(lengths <= 0.034 && skews <= 0.077, "{lengths} {skews}");
 }
 
 /// On a cylinder that a whole number of stitches fits around and up, every edge is as long as the gauge asks.
