@@ -304,11 +304,12 @@ fn table(
     if let Some(read) = &measured.readability {
         let _ = writeln!(
             text,
-            "reading   {:.2} words a stitch, at most {} a round, longest run {}, {:.0} % of increases stacked, shaping uneven by {:.2}",
+            "reading   {:.2} words a stitch, at most {} a round, longest run {}, {:.0} % of increases stacked ({:.0} % of those with room), shaping uneven by {:.2}",
             read.words_per_stitch,
             read.most_words,
             read.longest_run,
             100.0 * read.stacked_increases,
+            100.0 * read.stacked_by_choice,
             read.uneven_shaping
         );
     }

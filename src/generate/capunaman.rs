@@ -67,7 +67,7 @@ impl Baseline {
             Mark { nodes: free, ..Mark::default() },
             0,
             Effort { sweeps: options.sweeps, squareness: options.squareness },
-            Ends { range: [0.0, 1.0], ring: None, level: None },
+            Ends { range: [0.0, 1.0], ring: None, level: None, opens: false },
         );
         for (id, node) in self.nodes.iter_mut().enumerate() {
             let (u, tau) = (sheet.u[id], sheet.v[id]);

@@ -1,7 +1,7 @@
 //! Shapings at equal distances, so that a row folds into a repeat such as `(5 sc, inc) x 6`.
 
 use super::sheet::Shaped;
-use super::staircase::{Shaping, allowed, beside};
+use super::staircase::{Shaping, Taste, allowed};
 
 /// A row to be shaped.
 pub(crate) struct Row<'r> {
@@ -11,12 +11,10 @@ pub(crate) struct Row<'r> {
     pub below: &'r [Shaped],
     /// Increases, or with a minus decreases.
     pub goal: i32,
-    /// The first base of a new round.
-    pub marker: Option<usize>,
     /// Plain bases that shapings need between them.
     pub cooldown: usize,
-    /// Price of a shaping beside one of the row below.
-    pub ridge: f64,
+    /// What the row is asked for.
+    pub taste: Taste,
 }
 
 /// Bases at equal distances.
@@ -58,12 +56,13 @@ impl Row<'_> {
         let step = f64::from(self.goal.signum());
         let (mut cost, mut level, mut from) = (0.0, 0.0, 0);
         for place in places.iter() {
-            if !allowed(kind, self.below, place) || (kind == Shaping::Dec && self.marker == Some(place)) {
+            if !allowed(kind, self.below, place) || (kind == Shaping::Dec && self.taste.marker == Some(place))
+            {
                 return None;
             }
             cost += sums.off(from, place, level);
             (from, level) = (place, level + step);
-            cost += if beside(self.below, place) { price + self.ridge } else { price };
+            cost += price + self.taste.ridge(kind, self.below, place);
         }
         Some(cost + sums.off(from, self.curve.len(), level))
     }
@@ -96,7 +95,7 @@ mod tests {
     use super::*;
 
     fn row(curve: &[f64], below: &[Shaped], goal: i32) -> Option<Places> {
-        Row { curve, below, goal, marker: None, cooldown: 4, ridge: 1.0 }.spread(1.5, 1e9)
+        Row { curve, below, goal, cooldown: 4, taste: Taste::default() }.spread(1.5, 1e9)
     }
 
     #[test]
@@ -123,7 +122,7 @@ mod tests {
         let curve: Vec<f64> = (0..40).map(|i| f64::from((i - 30_i32).max(0)) / 2.0).collect();
         let below = vec![Shaped::No; 40];
         assert!(
-            Row { curve: &curve, below: &below, goal: 5, marker: None, cooldown: 2, ridge: 1.0 }
+            Row { curve: &curve, below: &below, goal: 5, cooldown: 2, taste: Taste::default() }
                 .spread(1.5, 20.0)
                 .is_none()
         );

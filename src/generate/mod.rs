@@ -20,6 +20,7 @@ mod sheet;
 mod short_rows;
 mod staircase;
 mod symmetric;
+mod top;
 mod tries;
 mod weave;
 
@@ -31,7 +32,7 @@ use crate::ir::{Gauge, Graph, Hand, MAX_LOOPS};
 use crate::shape::{Attachment, End, Joint, ParametricSurface, Tube, area, for_maker, is_revolution};
 use glam::DVec3;
 use patches::Patches;
-use relax::{Effort, Ends, Mark, Relaxer};
+use relax::{Brink, Effort, Ends, Mark, Relaxer};
 use rows::Rows;
 use seam::Turned;
 use sheet::{Foot, Sheet};
@@ -167,7 +168,7 @@ fn lay_on(
     let most = (3.0 * expected) as usize + 10_000;
     let laid = if even { Ground::new(surface, ends, &rows, gauge, options).lay_evenly(sink) } else { None };
     let laid = laid.map(|(sheet, start)| Laid { sheet, start, spread: 0.0, turn: turned.by, lifted: None });
-    let Some(Laid { mut sheet, start, turn, lifted, .. }) = laid.or_else(|| {
+    let Some(Laid { sheet, start, turn, lifted, .. }) = laid.or_else(|| {
         tries::best(options, expected, first.is_some(), |options, turn, judge| {
             // Where the place of the first row is given, its height is varied.
             let lifted = first.and_then(|_| Rows::new(surface, [leads[0] + LIFT * turn, leads[1]], gauge));
@@ -177,7 +178,10 @@ fn lay_on(
             for foot in first.unwrap_or_default() {
                 ground.range[0] = ground.range[0].min(foot.u);
             }
-            let (sheet, start, spread) = ground.weave(most, judge, sink)?;
+            let (mut sheet, start, spread) = ground.weave(most, judge, sink)?;
+            if patches.is_some() {
+                sheet.put_on(exact, turned.by);
+            }
             Some(Laid { sheet, start, spread, turn: turned.by, lifted })
         })
     }) else {
@@ -189,11 +193,6 @@ fn lay_on(
         let message =
             format!("a stitch of {:.2} mm height leaves no round to work on this tube", gauge.height);
         return fail(sink, Code::TooFewRows, message, "use a smaller stitch or a longer shape");
-    }
-    if patches.is_some() {
-        for ((point, u), v) in sheet.point.iter_mut().zip(&sheet.u).zip(&sheet.v) {
-            *point = exact.point(*u, v + turn);
-        }
     }
     if sheet.point.iter().any(|p| !p.is_finite()) {
         return fail(sink, Code::SurfaceBroken, "stitches ran off this surface".into(), GENTLER);
@@ -273,7 +272,7 @@ impl<'s> Ground<'s> {
             sink.step(u64::from(done), u64::from(rounds));
         });
         let free = if self.poles[0].is_some() { 0 } else { start };
-        let level = sheet.len() - counts[counts.len() - 1] as usize;
+        let top = sheet.len() - counts[counts.len() - 1] as usize;
         Relaxer::default().relax(
             surface,
             &mut sheet,
@@ -283,7 +282,8 @@ impl<'s> Ground<'s> {
             Ends {
                 range: self.range,
                 ring: self.poles[0].map(|pole| (pole, start)),
-                level: Some((rows, level)),
+                level: Some(Brink { rows, top, firm: false }),
+                opens: false,
             },
         );
         Some((sheet, start))

@@ -1,6 +1,7 @@
 //! How good a settled sheet is, in one number, so that the best of several tries can be kept.
 
-use super::sheet::{EdgeKind, Sheet, ShortRow, TileKind, Work};
+use super::sheet::{EdgeKind, Quad, Shaped, Sheet, ShortRow, TileKind, Work};
+use crate::ir::Stitch;
 
 /// Mean length error, its root mean square, and skew that weigh the same.
 const USUAL_LENGTH: f64 = 0.04;
@@ -15,9 +16,11 @@ const WORDS: f64 = 0.6;
 /// Rows between the highest and the lowest loop of the last turn that are free, and the price of one more.
 const LEVEL_FREE: f64 = 0.75;
 const LEVEL: f64 = 0.3;
+/// Price of increases that stand on others without need, as a share of all.
+const STACKED: f64 = 0.5;
 /// Price of an inverted tile as a share of all tiles, and of one at all.
 const INVERTED: f64 = 40.0;
-const ANY_INVERTED: f64 = 0.5;
+const ANY_INVERTED: f64 = 2.0;
 
 /// What a try came to: lower is better.
 #[derive(Clone, Copy, Debug, Default)]
@@ -28,9 +31,10 @@ pub(super) struct Score {
 
 impl Score {
     /// Mean absolute length error with its spread, and mean skew, each by its usual size; a bias and inverted tiles cost extra,
-    /// and so do words, with so much ease.
+    /// so do increases that stand on others, and so do words, with so much ease.
     pub(super) fn of(sheet: &Sheet, ease: f64) -> Self {
-        Self::of_fit(sheet).with_words(sheet, ease)
+        let fit = Self::of_fit(sheet);
+        Self { total: fit.total + STACKED * stacked(sheet), ..fit }.with_words(sheet, ease)
     }
 
     /// The same with so much weight on few words: runs of stitches, and four words for each short row.
@@ -49,7 +53,8 @@ impl Score {
         Self { total: self.total + LEVEL * (spread - LEVEL_FREE).max(0.0), ..self }
     }
 
-    fn of_fit(sheet: &Sheet) -> Self {
+    /// The same without what only a maker sees.
+    pub(super) fn of_fit(sheet: &Sheet) -> Self {
         let (mut length, mut sum, mut square) = (0.0, 0.0, 0.0);
         for edge in &sheet.edges {
             let rest = if edge.kind == EdgeKind::Wale { sheet.height } else { sheet.width };
@@ -70,14 +75,7 @@ impl Score {
             };
             let size = (across.length_squared() * up.length_squared()).sqrt();
             skew += if size > 0.0 { (across.dot(up) / size).abs() } else { 0.0 };
-            let corners = quad.corners;
-            if matches!(quad.kind, TileKind::Wales | TileKind::Step)
-                && corners[0] != corners[1]
-                && corners[2] != corners[3]
-            {
-                let jet = sheet.jet(corners[0]);
-                inverted += usize::from(jet.dv.cross(jet.du).dot((b1 - t0).cross(t1 - b0)) <= 0.0);
-            }
+            inverted += usize::from(is_inverted(sheet, quad));
         }
         let share = |sum: f64, count: usize| sum / count.max(1) as f64;
         let edges = sheet.edges.len();
@@ -90,4 +88,40 @@ impl Score {
         }
         Self { total, inverted }
     }
+}
+
+/// The tile lies with its inside out; turns and those of three corners count as fine.
+fn is_inverted(sheet: &Sheet, quad: &Quad) -> bool {
+    let [b0, b1, t0, t1] = quad.corners;
+    if !matches!(quad.kind, TileKind::Wales | TileKind::Step) || b0 == b1 || t0 == t1 {
+        return false;
+    }
+    let [left, right, top_left, top_right] = quad.corners.map(|id| sheet.point[id as usize]);
+    let jet = sheet.jet(b0);
+    jet.dv.cross(jet.du).dot((right - top_left).cross(top_right - left)) <= 0.0
+}
+
+/// The increases of the long rows that stand beside one of the row below although there are bases that are clear, as a
+/// share of those that could.
+fn stacked(sheet: &Sheet) -> f64 {
+    let (mut all, mut stacked) = (0, 0);
+    let mut first = sheet.main.first().map_or(0, |work| work.top[0]);
+    let (mut increases, mut close, mut clear) = (0_usize, 0_usize, 0_usize);
+    for (i, work) in sheet.main.iter().enumerate() {
+        let base = work.base[0] as usize;
+        let near = sheet.shaped.get(base.saturating_sub(1)..(base + 2).min(first as usize));
+        let near = near.is_some_and(|near| near.contains(&Shaped::Inc));
+        let increase = work.stitch == Stitch::INC;
+        increases += usize::from(increase);
+        close += usize::from(increase && near);
+        clear += usize::from(!near);
+        // A row ends where the next comes to its loops.
+        if sheet.main.get(i + 1).is_none_or(|next| next.base[0] >= first) {
+            let forced = increases.saturating_sub(clear).min(close);
+            (all, stacked) = (all + increases - forced, stacked + close - forced);
+            (increases, close, clear) = (0, 0, 0);
+            first = sheet.main.get(i + 1).map_or(first, |next| next.top[0]);
+        }
+    }
+    f64::from(stacked as u32) / f64::from(all.max(1) as u32)
 }

@@ -146,6 +146,25 @@ impl Sheet {
         }
     }
 
+    /// A decrease: its top moves to the middle between its own place and the foot of the second base.
+    pub(crate) fn join_top(&mut self, top: NodeId, other: DVec3) {
+        let i = top as usize;
+        let d = 0.5 * (other - self.point[i]);
+        let (x, y) = pull_back(self.du[i], self.dv[i], d);
+        self.u[i] += x;
+        self.v[i] += y;
+        self.point[i] += d;
+        self.shaped[i] = Shaped::Dec;
+    }
+
+    /// Puts all nodes on another surface at the same parameters, with v farther on by so much.
+    pub(crate) fn put_on(&mut self, surface: &dyn ParametricSurface, further: f64) {
+        for i in 0..self.len() {
+            let jet = surface.jet(self.u[i], self.v[i] + further);
+            (self.point[i], self.du[i], self.dv[i]) = (jet.point, jet.du, jet.dv);
+        }
+    }
+
     pub(crate) fn len(&self) -> usize {
         self.u.len()
     }

@@ -30,6 +30,8 @@ pub(crate) struct Taste {
     pub ease: f64,
     /// The first base of a new round, which is not worked together with the last of the one before.
     pub marker: Option<usize>,
+    /// Increases may stand on those of the row below.
+    pub stacks: bool,
 }
 
 impl Taste {
@@ -44,10 +46,21 @@ impl Taste {
         PRICE * (1.0 + self.ease * (n as f64 / USUAL_ROW).min(DEARER))
     }
 
-    /// What a shaping at base `i` costs more for those of the row below.
-    fn stacking(self, below: &[Shaped], i: usize) -> f64 {
+    /// What a shaping at base `i` costs more for those of the row below, of which any at the base itself is one.
+    fn stacking(self, shaping: Shaping, below: &[Shaped], i: usize) -> f64 {
         let own = if below[i] == Shaped::No { 0.0 } else { STACKED };
-        if self.ease == 0.0 || !beside(below, i) { own } else { own + self.ease * RIDGE }
+        own + self.ridge(shaping, below, i)
+    }
+
+    /// What it costs more beside those of the row below: stacked ones draw a ridge.
+    pub(super) fn ridge(self, shaping: Shaping, below: &[Shaped], i: usize) -> f64 {
+        if shaping == Shaping::Inc && !self.stacks && beside(below, i, |shaped| shaped == Shaped::Inc) {
+            RIDGE
+        } else if self.ease > 0.0 && beside(below, i, |shaped| shaped != Shaped::No) {
+            self.ease * PLAIN_RIDGE
+        } else {
+            0.0
+        }
     }
 
     /// What a row may cost more, in squared stitches, if its shapings are spread evenly.
@@ -62,15 +75,17 @@ const WAITING_MOST: f64 = 3.6;
 /// Stitches of a usual row, and how many times dearer shapings are in long ones with full ease.
 const USUAL_ROW: f64 = 15.0;
 const DEARER: f64 = 2.0;
-/// Price of a shaping beside one of the row below, with full ease.
-const RIDGE: f64 = 3.0;
+/// Price of an increase beside one of the row below, which is that of a few stitches' way to a place that is clear; and of
+/// any shaping beside another with full ease.
+const RIDGE: f64 = 4.0;
+const PLAIN_RIDGE: f64 = 3.0;
 /// Mean squared distance from where a shaping belongs that evenly spread ones may have more with full ease.
 const EVEN: f64 = 0.6;
 /// Levels on either side of the curve that are tried.
 const REACH: i32 = 4;
 const LEVELS: usize = 2 * REACH as usize + 1;
 /// What a way may cost more than the cheapest up to the same base: more than a few shapings that bring both together.
-const HOPELESS: f64 = 5.0;
+const HOPELESS: f64 = 8.0;
 /// Longest distance between shapings, in bases.
 const COOLDOWN: usize = 4;
 const WAITS: usize = COOLDOWN + 1;
@@ -89,7 +104,7 @@ pub(crate) struct Staircase {
 
 impl Staircase {
     /// Plans a row. `gaps[i]` is the signed distance from the foot before to foot i in stitch widths, `below` tells
-    /// how the bases themselves came about.
+    /// how the bases themselves came about, and it may go on beyond the row.
     pub(crate) fn solve(&mut self, gaps: &[f64], below: &[Shaped], taste: Taste) {
         let n = gaps.len();
         let goal = self.fill_curve(gaps, taste);
@@ -114,9 +129,10 @@ impl Staircase {
             let shift = middle - here;
             let hopeless = cheapest + hopeless_by;
             cheapest = f64::MAX;
-            let price = full + taste.stacking(below, i);
+            let price = |shaping| full + taste.stacking(shaping, below, i);
             let may_inc = i > 0 && allowed(Shaping::Inc, below, i);
             let may_dec = i > 0 && allowed(Shaping::Dec, below, i) && taste.marker != Some(i);
+            let (inc, dec) = (price(Shaping::Inc), price(Shaping::Dec));
             let mut reach = [LEVELS, 0];
             let levels = cost.iter().enumerate().take(live[1] + 1).skip(live[0]);
             for (level, waits) in levels {
@@ -141,11 +157,11 @@ impl Staircase {
                     reaches(to, wait.saturating_sub(1), so_far + off * off, Shaping::Plain);
                     if may_inc && (wait == 0 || cooldown == 0) {
                         let off = off - 1.0;
-                        reaches(to + 1, rested, so_far + off * off + price, Shaping::Inc);
+                        reaches(to + 1, rested, so_far + off * off + inc, Shaping::Inc);
                     }
                     if may_dec && wait == 0 {
                         let off = off + 1.0;
-                        reaches(to - 1, rested, so_far + off * off + price, Shaping::Dec);
+                        reaches(to - 1, rested, so_far + off * off + dec, Shaping::Dec);
                     }
                 }
             }
@@ -163,14 +179,7 @@ impl Staircase {
         if taste.ease > 0.0 && goal.abs() >= 2 {
             let least = cost.iter().flatten().copied().fold(f64::MAX, f64::min);
             let most = least + taste.evenness(n);
-            let row = even::Row {
-                curve: &self.curve,
-                below,
-                goal,
-                marker: taste.marker,
-                cooldown,
-                ridge: taste.ease * RIDGE,
-            };
+            let row = even::Row { curve: &self.curve, below, goal, cooldown, taste };
             if let Some(places) = row.spread(full, most) {
                 let kind = if goal > 0 { Shaping::Inc } else { Shaping::Dec };
                 self.plan.fill(Shaping::Plain);
@@ -236,10 +245,10 @@ impl Staircase {
     }
 }
 
-/// True where a base or one beside it is of a shaping of the row below: stacked ones draw a ridge.
-pub(super) fn beside(below: &[Shaped], i: usize) -> bool {
+/// True where a base or one beside it came about in such a way.
+pub(super) fn beside(below: &[Shaped], i: usize, such: impl Fn(Shaped) -> bool) -> bool {
     let near = below.get(i.saturating_sub(1)..(i + 2).min(below.len()));
-    near.is_some_and(|near| near.iter().any(|shaped| *shaped != Shaped::No))
+    near.is_some_and(|near| near.iter().any(|shaped| such(*shaped)))
 }
 
 /// The row below lets a shaping stand at base `i`: it does not undo what is there.
@@ -282,5 +291,25 @@ mod tests {
         for pair in staircase.plan.windows(2) {
             assert_ne!(pair, [Shaping::Dec, Shaping::Dec]);
         }
+    }
+
+    #[test]
+    fn an_increase_moves_aside_for_one_below() {
+        // All of one stitch is missing at one place.
+        let mut gaps = [1.0; 30];
+        gaps[15] = 2.0;
+        let place = |below: &[Shaped], taste: Taste| {
+            let mut staircase = Staircase::default();
+            staircase.solve(&gaps, below, taste);
+            staircase.plan.iter().position(|shaping| *shaping == Shaping::Inc)
+        };
+        let mut below = [Shaped::No; 30];
+        assert_eq!(place(&below, Taste::default()), Some(15));
+        below[15..17].fill(Shaped::Inc);
+        let aside = place(&below, Taste::default()).expect("worked somewhere");
+        assert!([13, 18].contains(&aside), "{aside}");
+        assert_eq!(place(&below, Taste { stacks: true, ..Taste::default() }), Some(15));
+        below.fill(Shaped::Inc);
+        assert!(place(&below, Taste::default()).is_some(), "where there is no other place, it stays");
     }
 }

@@ -5,6 +5,7 @@
 
 use super::rows::Rows;
 use super::sheet::{Foot, Shaped, Sheet, Work};
+use super::staircase::beside;
 use crate::ir::{NodeId, Stitch};
 use crate::shape::ParametricSurface;
 
@@ -122,7 +123,7 @@ pub(crate) fn lay_rounds(
     for (k, pair) in counts.windows(2).enumerate() {
         let (n, m) = (pair[0], pair[1]);
         let repeats = n.abs_diff(m);
-        let rule = Repeat::new(n, m, shaped_rounds);
+        let rule = Repeat::new(n, m, shaped_rounds).clear_of(&sheet.shaped[bases.start as usize..], n);
         shaped_rounds += u32::from(repeats > 0);
         let first = sheet.len() as NodeId;
         let slant = sheet.height / (sheet.width * f64::from(n.max(m)));
@@ -188,6 +189,23 @@ impl Repeat {
         let period = n / repeats;
         let plain = period - u32::from(shaping.works);
         Self { period, lead: if shaped_before.is_multiple_of(2) { plain } else { plain / 2 }, shaping }
+    }
+
+    /// The same with the shaping where fewest increases stand on one of the round `below`, as near as may be; where that
+    /// helps no more than a few, it stays.
+    fn clear_of(self, below: &[Shaped], n: u32) -> Self {
+        if self.shaping != Stitch::INC {
+            return self;
+        }
+        let stacked = |lead: u32| {
+            let places = (lead..n).step_by(self.period as usize);
+            let near = places.filter(|base| beside(below, *base as usize, |shaped| shaped == Shaped::Inc));
+            near.count()
+        };
+        let moves = [0, -1, 1, -2, 2, -3, 3].map(|by| self.lead.checked_add_signed(by));
+        let leads = moves.into_iter().flatten().filter(|lead| *lead < self.period);
+        let lead = leads.min_by_key(|lead| stacked(*lead)).unwrap_or(self.lead);
+        if 2 * stacked(lead) > stacked(self.lead) { self } else { Self { lead, ..self } }
     }
 
     /// Mean lean of the wales to the working direction when bases and tops both stand evenly, in repeats.

@@ -11,6 +11,8 @@ const MOST_RESCUED: f64 = 50_000.0;
 /// A score that needs no further try, and one that needs none beyond those asked for.
 const GOOD: f64 = 2.1;
 const POOR: f64 = 2.5;
+/// A score that is so bad that pulling the last turn level has torn it.
+const BAD: f64 = 4.0;
 /// A try whose score is so much worse than the best before its rows have settled is given up.
 const BAR: f64 = 0.1;
 /// Further tries for parts on which all are poor, or have inverted tiles.
@@ -25,6 +27,10 @@ pub(super) struct Judge {
     pub bar: f64,
     /// The last turn is pulled level, at the price of tiles that it may press flat.
     pub level: bool,
+    /// Increases may stand on others as if that were nothing.
+    pub stacks: bool,
+    /// Narrow tiles are pushed open after each row, not only in the end.
+    pub opens: bool,
 }
 
 /// How a try differs from the first: where its helix begins, in turns from there; the factor of the activation threshold,
@@ -90,14 +96,16 @@ pub(super) fn best(
         if best.as_ref().is_some_and(|(score, _)| score.inverted == 0 && score.total <= enough) {
             break;
         }
-        let inverted = best.as_ref().is_none_or(|(score, _)| score.inverted > 0);
-        let rescue = index >= tries && inverted;
+        let bad = best.as_ref().is_none_or(|(score, _)| score.inverted > 0 || score.total > BAD);
+        let rescue = index >= tries && bad;
         let (options, turn) = variant(options, index, rescue);
         let bar = match &best {
             Some((score, _)) if score.inverted == 0 => score.total + BAR,
             _ => f64::INFINITY,
         };
-        let Some(laid) = lay(&options, turn, Judge { bar, level: !rescue }) else { continue };
+        let stacks = rescue && index % 2 == 1;
+        let judge = Judge { bar, level: !rescue, stacks, opens: index > 0 };
+        let Some(laid) = lay(&options, turn, judge) else { continue };
         let score = Score::of(&laid.sheet, options.ease()).with_level(laid.spread);
         if best.as_ref().is_none_or(|(so_far, _)| so_far.total.is_nan() || score.total < so_far.total - 1e-9)
         {

@@ -6,12 +6,13 @@
 
 use super::marker::Marker;
 use super::options::Options;
-use super::relax::{Effort, Ends, Mark, Relaxer};
+use super::relax::{Brink, Effort, Ends, Mark, Relaxer};
 use super::rows::{Rows, row_speed};
 use super::score::Score;
 use super::sheet::{Edge, EdgeKind, Foot, Quad, Shaped, Sheet, ShortRow, TileKind, Work};
 use super::short_rows::{GAP, Planner, Rules};
 use super::staircase::{Shaping, Staircase, Taste};
+use super::top::{self, Top};
 use super::tries::Judge;
 use crate::ir::{NodeId, Stitch};
 use crate::math;
@@ -38,6 +39,8 @@ const FADE: f64 = 0.6;
 const LAST_ROWS_PRICE: f64 = 0.4;
 /// Stitches more that a pass of a short row may be off before it is shaped, with full ease.
 const PLAIN_PASSES: f64 = 1.5;
+/// Stitches more that it may be off where an increase would stand on one of the pass below.
+const PASS_RIDGE: f64 = 0.6;
 /// How many times dearer the ends of short rows are with full ease.
 const FEWER_ENDS: f64 = 1.0;
 /// Fewest loops of a batch that short rows may lie on.
@@ -87,6 +90,7 @@ pub(crate) struct Weaver<'s> {
     marker: Marker,
     range: [f64; 2],
     part_batch: bool,
+    opens: bool,
     most: usize,
     // Buffers of one batch.
     feet: Vec<Foot>,
@@ -125,6 +129,7 @@ impl<'s> Weaver<'s> {
             marker: Marker::new(options.ease() > 0.0, first_row),
             range,
             part_batch: false,
+            opens: false,
             most,
             feet: Vec::new(),
             gaps: Vec::new(),
@@ -139,6 +144,7 @@ impl<'s> Weaver<'s> {
     ///
     /// When its score is over the bar after the first sweeps it is given up.
     pub(crate) fn run(&mut self, judge: Judge, mut progress: impl FnMut(u64, u64)) -> Outcome {
+        self.opens = judge.opens;
         loop {
             let length = self.batch_length();
             self.part_batch = length < self.ring.len();
@@ -151,7 +157,8 @@ impl<'s> Weaver<'s> {
                 self.ring.splice(0..0, bases);
                 break;
             }
-            let (tops, top_base) = self.work(&bases[..worked], marker);
+            let taste = Taste { ease: self.options.ease(), marker, stacks: judge.stacks };
+            let (tops, top_base) = self.work(&bases[..worked], taste);
             self.settle_window();
             let marked = marker.and_then(|base| top_base.iter().position(|id| *id == bases[base]));
             let first = marked.map(|top| tops[top]);
@@ -180,15 +187,15 @@ impl<'s> Weaver<'s> {
             }
         }
         self.settle_all(self.options.sweeps - first, judge.level);
+        if self.options.sweeps > 0 {
+            self.settle_top();
+        }
         Outcome::Done
     }
 
     /// Rows between the highest and the lowest open loop, each against its place on the helix.
     pub(crate) fn spread(&self) -> f64 {
-        let off =
-            self.ring.iter().map(|id| *id as usize).map(|i| self.sheet.v[i] - self.rows.tau(self.sheet.u[i]));
-        let (low, high) = off.fold((f64::MAX, f64::MIN), |(low, high), off| (low.min(off), high.max(off)));
-        (high - low).max(0.0)
+        top::spread(&self.sheet, self.rows, &self.ring)
     }
 
     /// Missing height at a node against its place on the helix, in stitch heights.
@@ -282,7 +289,7 @@ impl<'s> Weaver<'s> {
     }
 
     /// Works one row over the bases: shaping, tops, edges and tiles. Returns the tops and the base of each.
-    fn work(&mut self, bases: &[NodeId], marker: Option<usize>) -> (Vec<NodeId>, Vec<NodeId>) {
+    fn work(&mut self, bases: &[NodeId], taste: Taste) -> (Vec<NodeId>, Vec<NodeId>) {
         let feet = std::mem::take(&mut self.feet);
         let feet = &feet[..bases.len()];
         self.gaps.clear();
@@ -292,12 +299,13 @@ impl<'s> Weaver<'s> {
             self.gaps.push(gap);
         }
         self.below.clear();
-        self.below.extend(bases.iter().map(|id| self.sheet.shaped[*id as usize]));
+        // The loop after the last is a neighbor too.
+        let bases_and_next = bases.iter().chain(self.ring.first());
+        self.below.extend(bases_and_next.map(|id| self.sheet.shaped[*id as usize]));
         if self.options.paper {
             let Staircase { plan, rest, .. } = &mut self.staircase;
             super::paper::shape(&self.gaps, &self.below, plan, rest);
         } else {
-            let taste = Taste { ease: self.options.ease(), marker };
             self.staircase.solve(&self.gaps, &self.below, taste);
         }
         let mut tops = Vec::with_capacity(bases.len() + 8);
@@ -311,7 +319,7 @@ impl<'s> Weaver<'s> {
             {
                 work.stitch = Stitch::DEC;
                 work.base[1] = base;
-                self.join_top(top, foot.point);
+                self.sheet.join_top(top, foot.point);
                 self.sheet.wale(self.last_wale, base, top);
                 self.last_wale = Some((base, top));
             } else {
@@ -321,7 +329,8 @@ impl<'s> Weaver<'s> {
                 for (z, offset) in offsets.iter().enumerate() {
                     let place = foot.shifted(offset * width);
                     let top = self.sheet.add(&place, if inc { Shaped::Inc } else { Shaped::No });
-                    self.sheet.course(top_of_yarn(self.last_wale, top), top);
+                    let yarn = self.last_wale.map_or(top - 1, |(_, top)| top);
+                    self.sheet.course(yarn, top);
                     self.sheet.wale(self.last_wale, base, top);
                     self.last_wale = Some((base, top));
                     made[z] = top;
@@ -341,13 +350,8 @@ impl<'s> Weaver<'s> {
         (tops, top_base)
     }
 
-    /// A decrease moves the top of the stitch before to the middle.
-    fn join_top(&mut self, top: NodeId, other: DVec3) {
-        join_top(&mut self.sheet, top, other);
-    }
-
     fn ends(&self) -> Ends<'static> {
-        Ends { range: self.range, ring: self.ring_center, level: None }
+        Ends { range: self.range, ring: self.ring_center, level: None, opens: self.opens }
     }
 
     /// The first row of an open tube stays where it is.
@@ -372,12 +376,22 @@ impl<'s> Weaver<'s> {
     }
 
     fn settle_all(&mut self, sweeps: u32, level: bool) {
-        let top = self.ring.iter().copied().min().unwrap_or(0) as usize;
         let mark = self.free(Mark::default());
         let effort = Effort { sweeps, squareness: self.options.squareness };
-        let level = Some((self.rows, if level { top } else { usize::MAX }));
+        let top = if level { top::first(&self.ring) } else { usize::MAX };
+        let level = Some(Brink { rows: self.rows, top, firm: false });
         let ends = Ends { level, ..self.ends() };
         self.relaxer.relax(self.surface, &mut self.sheet, mark, 0, effort, ends);
+    }
+
+    /// Settles the last rows once more where they end ragged.
+    fn settle_top(&mut self) {
+        let mark = self.marks[self.marks.len().saturating_sub(top::ROWS)..].first();
+        let mark = self.free(mark.copied().unwrap_or_default());
+        let (surface, rows, ends, squareness) =
+            (self.surface, self.rows, self.ends(), self.options.squareness);
+        Top { surface, rows, ring: &self.ring, mark, ends, squareness }
+            .settle(&mut self.relaxer, &mut self.sheet);
     }
 
     /// Puts the new tops into the ring, with short rows over them where they lag behind, and short rows over these where
@@ -479,6 +493,11 @@ impl<'s> Weaver<'s> {
         (open, cut)
     }
 
+    /// One of these loops is of an increase.
+    fn beside_increase(&self, loops: &[NodeId]) -> bool {
+        loops.iter().any(|id| self.sheet.shaped[*id as usize] == Shaped::Inc)
+    }
+
     /// One pass of a short row over `bases`, from left to right whatever its direction of work.
     fn pass(&mut self, bases: &[NodeId], turn: TileKind) -> (Vec<NodeId>, Vec<Work>) {
         const LEAK: f64 = 0.9;
@@ -511,7 +530,9 @@ impl<'s> Weaver<'s> {
                 if wait <= 0 && i + 2 < n {
                     let (own, left) =
                         (self.sheet.shaped[bases[i] as usize], self.sheet.shaped[bases[i - 1] as usize]);
-                    if error > threshold && own != Shaped::Dec {
+                    let beside = self.beside_increase(&bases[i - 1..i + 2]);
+                    let ridge = if beside { PASS_RIDGE } else { 0.0 };
+                    if error > threshold + ridge && own != Shaped::Dec {
                         plan = Shaping::Inc;
                         error -= 1.0;
                         wait = COOLDOWN;
@@ -529,7 +550,7 @@ impl<'s> Weaver<'s> {
             {
                 work.stitch = Stitch::DEC;
                 work.base[1] = bases[i];
-                join_top(&mut self.sheet, top, feet[i].point);
+                self.sheet.join_top(top, feet[i].point);
                 self.sheet.wale(before, bases[i], top);
                 before = Some((bases[i], top));
                 note(count, (bases[i], top));
@@ -572,22 +593,6 @@ impl<'s> Weaver<'s> {
 /// Neighbors that give the course direction in a ring of `size` loops.
 fn reach(size: usize) -> usize {
     (size / 4).clamp(1, REACH)
-}
-
-/// The last loop that the yarn made: the top of the last wale, or the end of the first row.
-fn top_of_yarn(last_wale: Option<(NodeId, NodeId)>, next: NodeId) -> NodeId {
-    last_wale.map_or(next - 1, |(_, top)| top)
-}
-
-/// A decrease: its top moves to the middle between its own place and the foot of the second base.
-fn join_top(sheet: &mut Sheet, top: NodeId, other: DVec3) {
-    let i = top as usize;
-    let d = 0.5 * (other - sheet.point[i]);
-    let (x, y) = super::sheet::pull_back(sheet.du[i], sheet.dv[i], d);
-    sheet.u[i] += x;
-    sheet.v[i] += y;
-    sheet.point[i] += d;
-    sheet.shaped[i] = Shaped::Dec;
 }
 
 const _: () = assert!(GAP >= 2, "a short row needs a neighbor on either side");

@@ -10,6 +10,7 @@ mod geometry;
 mod mesh;
 mod readability;
 mod sampler;
+mod stacked;
 mod stats;
 mod walk;
 

@@ -1,6 +1,7 @@
 //! How pleasant a pattern is to work, from its folded rows and its graph.
 
-use crate::ir::{Block, Graph, Kind, NodeId, Op, Pattern, Step};
+use super::stacked::Increases;
+use crate::ir::{Block, Graph, Kind, Op, Pattern, Step};
 use serde::Serialize;
 
 /// Numbers on the reading of a pattern.
@@ -14,6 +15,9 @@ pub struct Readability {
     pub equal_rounds: f64,
     /// Share of increases within one stitch of an increase one round below; stacked ones draw a visible ridge.
     pub stacked_increases: f64,
+    /// The same among those that could stand clear: where a round has more increases than stitches with none beside them in
+    /// the round below, as around a magic ring, some are stacked wherever they are put, and these are left out.
+    pub stacked_by_choice: f64,
     /// Short rows for each thousand stitches.
     pub short_rows_per_thousand: f64,
     /// Longest run of equal stitches that has to be counted, where it is not the whole round.
@@ -52,12 +56,14 @@ impl Readability {
                 }
             }
         }
+        let Increases { all, stacked, forced } = Increases::of(graphs);
         let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
         Self {
             words_per_stitch: share(words as f64, stitches as f64),
             most_words,
             equal_rounds: share(equal as f64, rounds as f64),
-            stacked_increases: stacked(graphs),
+            stacked_increases: share(stacked as f64, all as f64),
+            stacked_by_choice: share((stacked - forced) as f64, (all - forced) as f64),
             short_rows_per_thousand: share(500.0 * turns as f64, stitches as f64),
             longest_run,
             uneven_shaping: share(uneven, shaped as f64),
@@ -129,27 +135,6 @@ fn longest(block: &Block) -> u32 {
         })
         .max()
         .unwrap_or(0)
-}
-
-fn stacked(graphs: &[Graph]) -> f64 {
-    let (mut all, mut stacked) = (0_usize, 0_usize);
-    for graph in graphs {
-        let mut made_by_increase = vec![false; graph.nodes.len()];
-        let increases =
-            || graph.tiles.iter().filter(|tile| tile.stitch.is_some_and(crate::ir::Stitch::is_increase));
-        for id in increases().flat_map(|tile| tile.top.iter()) {
-            if let Some(made) = made_by_increase.get_mut(*id as usize) {
-                *made = true;
-            }
-        }
-        let made = |id: NodeId| made_by_increase.get(id as usize) == Some(&true);
-        for tile in increases() {
-            all += 1;
-            let near = |id: &NodeId| made(*id) || made(id.saturating_sub(1)) || made(id.saturating_add(1));
-            stacked += usize::from(tile.base.iter().any(near));
-        }
-    }
-    if all == 0 { 0.0 } else { stacked as f64 / all as f64 }
 }
 
 #[cfg(test)]

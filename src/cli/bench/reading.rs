@@ -61,10 +61,11 @@ fn case(input: &str) -> Result<Case, Failure> {
 /// A column: its head, and what stands in it for one pattern.
 type Column = (&'static str, fn(&Measured) -> f64, usize);
 
-const COLUMNS: [Column; 9] = [
+const COLUMNS: [Column; 10] = [
     ("words a stitch", |it| reading(it).map_or(0.0, |read| read.words_per_stitch), 4),
     ("equal rounds %", |it| 100.0 * reading(it).map_or(0.0, |read| read.equal_rounds), 1),
     ("stacked %", |it| 100.0 * reading(it).map_or(0.0, |read| read.stacked_increases), 1),
+    ("by choice %", |it| 100.0 * reading(it).map_or(0.0, |read| read.stacked_by_choice), 1),
     ("uneven", |it| reading(it).map_or(0.0, |read| read.uneven_shaping), 3),
     ("short rows / 1000", |it| reading(it).map_or(0.0, |read| read.short_rows_per_thousand), 2),
     ("longest run", |it| reading(it).map_or(0.0, |read| f64::from(read.longest_run)), 1),

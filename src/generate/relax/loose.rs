@@ -1,21 +1,30 @@
 //! The few pulls that do not lie between neighboring wales: steps and other lone edges, turns, narrow tiles, the magic
 //! ring and the level of the last turn.
 
-use super::{Ends, Level, Relaxer, STEP_REST, STEP_WEIGHT, Scales, Span, TINY};
+use super::{Brink, Ends, Level, Relaxer, STEP_REST, STEP_WEIGHT, Scales, Span, TINY};
 use crate::generate::sheet::{EdgeKind, Quad, Sheet, TileKind};
 use glam::{DVec3, Vec3A, Vec4, Vec4Swizzles};
 
-/// In the final sweeps a tile that has less than this share of its area left is pushed open, with this weight.
+/// A tile that has less than this share of its area left is pushed open, with this weight.
 const NARROW: f32 = 0.3;
 const NARROW_WEIGHT: f32 = 2.0;
 
-/// Pull of the last turn of tops toward its level: its weight, how much higher than the helix that lies, how far a top may
-/// be off it for nothing, how much farther the pull grows, in this slack, and from where on it is no use, in rows.
-const LEVEL_WEIGHT: f64 = 2.8;
+/// How the last turn of tops is pulled toward its level, and the same where it is to be firm.
+const PULL: Pull = Pull { weight: 2.8, slack: 0.29, far: 1.0 };
+const FIRM_PULL: Pull = Pull { weight: 10.0, slack: 0.25, far: 1.6 };
+/// How much higher than the helix that level lies, in rows.
 const LEVEL_SHIFT: f64 = 0.15;
-const LEVEL_SLACK: f64 = 0.29;
+/// How much farther than the slack the pull grows, in this slack.
 const LEVEL_CAP: f32 = 1.2;
-const LEVEL_FAR: f64 = 1.0;
+
+/// A pull toward the level.
+#[derive(Clone, Copy, Debug)]
+struct Pull {
+    weight: f64,
+    /// How far a top may be off its level for nothing, and from where on the pull is no use, in rows.
+    slack: f64,
+    far: f64,
+}
 
 /// A tile that has little of its area left.
 #[derive(Clone, Copy, Debug)]
@@ -84,41 +93,43 @@ impl Relaxer {
         }
         self.narrow.clear();
         self.level.clear();
-        if let Some((rows, top)) = ends.level {
-            let unit = 0.5 / (scales.width * scales.height);
-            for corners in self.columns.tiles() {
-                let [b0, b1, t0, t1] = corners;
-                let id = b0 + span.low;
-                if b0 == b1 || t0 == t1 || id < span.first {
-                    continue;
-                }
-                let mut tile = Narrow { corners, normal: sheet.dv[id].cross(sheet.du[id]).as_vec3a() };
-                // Most tiles are wide, and need no quotient.
-                let length = dot(tile.normal, tile.normal).sqrt();
-                if tile.share(&self.point).0 * unit < 2.0 * NARROW * length {
-                    tile.normal *= unit / length.max(f32::MIN_POSITIVE);
-                    let (_, by_rising, by_falling) = tile.share(&self.point);
-                    let slopes = [by_rising, by_falling, by_falling, by_rising];
-                    for (i, slope) in corners.into_iter().zip(slopes) {
-                        add_outer(&mut stiffness[i], slope, 4.0 * NARROW_WEIGHT);
-                    }
-                    self.narrow.push(tile);
-                }
+        let unit = 0.5 / (scales.width * scales.height);
+        let tiles = self.columns.tiles().filter(|_| ends.opens || ends.level.is_some());
+        for corners in tiles {
+            let [b0, b1, t0, t1] = corners;
+            let id = b0 + span.low;
+            if b0 == b1 || t0 == t1 || id < span.first {
+                continue;
             }
+            let mut tile = Narrow { corners, normal: sheet.dv[id].cross(sheet.du[id]).as_vec3a() };
+            // Most tiles are wide, and need no quotient.
+            let length = dot(tile.normal, tile.normal).sqrt();
+            if tile.share(&self.point).0 * unit < 2.0 * NARROW * length {
+                tile.normal *= unit / length.max(f32::MIN_POSITIVE);
+                let (_, by_rising, by_falling) = tile.share(&self.point);
+                let slopes = [by_rising, by_falling, by_falling, by_rising];
+                for (i, slope) in corners.into_iter().zip(slopes) {
+                    add_outer(&mut stiffness[i], slope, 4.0 * NARROW_WEIGHT);
+                }
+                self.narrow.push(tile);
+            }
+        }
+        if let Some(Brink { rows, top, firm }) = ends.level {
+            let pull = if firm { FIRM_PULL } else { PULL };
             for i in top.max(span.first)..sheet.len() {
                 if !ends.pulls_level(sheet, i) {
                     continue;
                 }
-                if (rows.tau(sheet.u[i]) - sheet.v[i]).abs() > LEVEL_FAR {
+                if (rows.tau(sheet.u[i]) - sheet.v[i]).abs() > pull.far {
                     continue;
                 }
                 let (du, dv) = (sheet.du[i], sheet.dv[i]);
                 // The matrix takes the whole weight along u; that it also takes some across is no harm.
-                let weight = LEVEL_WEIGHT / sheet.height.powi(2);
+                let weight = pull.weight / sheet.height.powi(2);
                 add_outer(&mut stiffness[i - span.low], du.normalize_or_zero().as_vec3a(), weight as f32);
                 let across = du - dv * (du.dot(dv) / dv.length_squared().max(1e-30));
                 let dual = across / across.length_squared().max(1e-30);
-                let slack = rows.at(sheet.v[i] + LEVEL_SLACK) - rows.at(sheet.v[i]);
+                let slack = rows.at(sheet.v[i] + pull.slack) - rows.at(sheet.v[i]);
                 self.level.push(Level {
                     slack: slack as f32,
                     node: i - span.first,

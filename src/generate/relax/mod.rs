@@ -56,8 +56,20 @@ pub(crate) struct Ends<'r> {
     pub range: [f64; 2],
     /// The magic ring: its center, and the number of nodes whose posts stand in it.
     pub ring: Option<(DVec3, usize)>,
-    /// In the final relaxation, the rows that the tops of the last turn are pulled to, and where these begin.
-    pub level: Option<(&'r Rows, usize)>,
+    /// In the final relaxation, what the tops of the last turn are pulled to.
+    pub level: Option<Brink<'r>>,
+    /// Narrow tiles are pushed open also before.
+    pub opens: bool,
+}
+
+/// The last turn of tops, which settles level.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Brink<'r> {
+    pub rows: &'r Rows,
+    /// Where these tops begin; with none, the sweeps are final and there is no pull.
+    pub top: usize,
+    /// The pull is hard, also far away.
+    pub firm: bool,
 }
 
 /// How long and how square.
@@ -320,7 +332,7 @@ impl Ends<'_> {
     /// The node is among the tops of the last turn, which settle level.
     #[inline]
     fn pulls_level(&self, sheet: &Sheet, i: usize) -> bool {
-        self.level.is_some_and(|(rows, top)| i >= top && sheet.v[i] >= rows.count - LAST_TURN)
+        self.level.is_some_and(|brink| i >= brink.top && sheet.v[i] >= brink.rows.count - LAST_TURN)
     }
 }
 

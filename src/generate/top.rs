@@ -1,0 +1,96 @@
+//! The last turn, made level where it is ragged when the whole has settled.
+//!
+//! Short rows leave steps two rows high, and the last ones have no row above them that would hide them. The sweeps over the whole
+//! level short steps; long ones, as in rounds of many fine stitches, take the rows below with them, and more sweeps.
+
+use super::relax::{Brink, Effort, Ends, Mark, Relaxer};
+use super::rows::Rows;
+use super::score::Score;
+use super::sheet::Sheet;
+use crate::ir::NodeId;
+use crate::shape::ParametricSurface;
+
+/// Rows that settle with the top.
+pub(super) const ROWS: usize = 12;
+/// Highest minus lowest open loop from which on it is worth the while, in rows.
+const RAGGED: f64 = 0.77;
+/// What the whole may lose by that, as a score.
+const PRICE: f64 = 0.1;
+/// Sweeps at once, and how many times these.
+const SWEEPS: u32 = 20;
+const TIMES: usize = 3;
+
+/// What there is to settle.
+pub(super) struct Top<'w> {
+    pub surface: &'w dyn ParametricSurface,
+    pub rows: &'w Rows,
+    /// The open loops.
+    pub ring: &'w [NodeId],
+    /// Where the last rows begin.
+    pub mark: Mark,
+    pub ends: Ends<'w>,
+    pub squareness: f64,
+}
+
+impl Top<'_> {
+    /// Pulls the open loops firmly to their level until they are, unless that costs too much elsewhere or presses tiles flat.
+    pub(super) fn settle(&self, relaxer: &mut Relaxer, sheet: &mut Sheet) {
+        let brink = Brink { rows: self.rows, top: first(self.ring), firm: true };
+        let ends = Ends { level: Some(brink), ..self.ends };
+        let effort = Effort { sweeps: SWEEPS, squareness: self.squareness };
+        for _ in 0..TIMES {
+            if spread(sheet, self.rows, self.ring) <= RAGGED {
+                return;
+            }
+            let before = Places::of(sheet, self.mark.nodes);
+            let fit = Score::of_fit(sheet);
+            relaxer.relax(self.surface, sheet, self.mark, 0, effort, ends);
+            let after = Score::of_fit(sheet);
+            if after.inverted > fit.inverted || after.total > fit.total + PRICE {
+                return before.restore(sheet);
+            }
+        }
+    }
+}
+
+/// The first of the open loops.
+pub(super) fn first(ring: &[NodeId]) -> usize {
+    ring.iter().copied().min().unwrap_or(0) as usize
+}
+
+/// Rows between the highest and the lowest open loop, each against its place on the helix.
+pub(super) fn spread(sheet: &Sheet, rows: &Rows, ring: &[NodeId]) -> f64 {
+    let off = ring.iter().map(|id| *id as usize).map(|i| sheet.v[i] - rows.tau(sheet.u[i]));
+    let (low, high) = off.fold((f64::MAX, f64::MIN), |(low, high), off| (low.min(off), high.max(off)));
+    (high - low).max(0.0)
+}
+
+/// Where the last nodes were.
+struct Places {
+    u: Vec<f64>,
+    v: Vec<f64>,
+    point: Vec<glam::DVec3>,
+    du: Vec<glam::DVec3>,
+    dv: Vec<glam::DVec3>,
+}
+
+impl Places {
+    fn of(sheet: &Sheet, first: usize) -> Self {
+        Self {
+            u: sheet.u[first..].to_vec(),
+            v: sheet.v[first..].to_vec(),
+            point: sheet.point[first..].to_vec(),
+            du: sheet.du[first..].to_vec(),
+            dv: sheet.dv[first..].to_vec(),
+        }
+    }
+
+    fn restore(self, sheet: &mut Sheet) {
+        let first = sheet.len() - self.u.len();
+        sheet.u.splice(first.., self.u);
+        sheet.v.splice(first.., self.v);
+        sheet.point.splice(first.., self.point);
+        sheet.du.splice(first.., self.du);
+        sheet.dv.splice(first.., self.dv);
+    }
+}
