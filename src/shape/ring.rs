@@ -2,6 +2,11 @@
 
 use glam::DVec3;
 
+/// The phase of samples is found to within this share of their distance.
+const NEAR: f64 = 0.01;
+/// Places around a ring at which it is first compared with another one.
+const WIDE: usize = 10;
+
 /// A closed polyline with the lengths along it.
 #[derive(Clone, Debug)]
 pub struct Ring {
@@ -22,9 +27,9 @@ impl Ring {
         }
         let mut lengths = Vec::with_capacity(points.len() + 1);
         let mut total = 0.0;
-        for (i, point) in points.iter().enumerate() {
+        for (point, next) in points.iter().zip(points.iter().skip(1).chain(points.first())) {
             lengths.push(total);
-            total += point.distance(points[(i + 1) % points.len()]);
+            total += point.distance(*next);
         }
         lengths.push(total);
         (total.is_finite() && total > 0.0).then_some(Self { points, lengths })
@@ -42,13 +47,9 @@ impl Ring {
 
     /// Middle of the line, by length.
     pub fn center(&self) -> DVec3 {
-        let count = self.points.len();
-        let sum: DVec3 = (0..count)
-            .map(|i| {
-                let (a, b) = (self.points[i], self.points[(i + 1) % count]);
-                0.5 * (a + b) * (self.lengths[i + 1] - self.lengths[i])
-            })
-            .sum();
+        let edges = self.points.iter().zip(self.points.iter().skip(1).chain(self.points.first()));
+        let lengths = self.lengths.windows(2).map(|pair| pair[1] - pair[0]);
+        let sum: DVec3 = edges.zip(lengths).map(|((a, b), length)| 0.5 * (*a + *b) * length).sum();
         sum / self.length()
     }
 
@@ -95,19 +96,29 @@ impl Ring {
         let begin = phase - phase.floor();
         let mut i =
             self.lengths.partition_point(|length| *length <= begin * total).clamp(1, self.points.len()) - 1;
+        let (first, step) = (begin * total, total / count as f64);
+        let end = |i: usize| self.points.get(i + 1).or(self.points.first()).copied().unwrap_or_default();
+        let stretch = |i: usize| {
+            let span = self.lengths[i + 1] - self.lengths[i];
+            (if span > 0.0 { 1.0 / span } else { 0.0 }, self.points[i], end(i) - self.points[i])
+        };
+        let (mut per, mut from, mut way) = stretch(i);
         let mut samples = Vec::with_capacity(count);
         let mut lap = 0.0;
         for k in 0..count {
-            let mut target = (begin + k as f64 / count as f64) * total - lap;
+            let mut target = first + k as f64 * step - lap;
+            let before = i;
             if target >= total {
                 (target, lap, i) = (target - total, lap + total, 0);
             }
             while i + 1 < self.points.len() && self.lengths[i + 1] <= target {
                 i += 1;
             }
-            let span = self.lengths[i + 1] - self.lengths[i];
-            let t = if span > 0.0 { ((target - self.lengths[i]) / span).clamp(0.0, 1.0) } else { 0.0 };
-            samples.push(self.points[i].lerp(self.points[(i + 1) % self.points.len()], t));
+            if i != before {
+                (per, from, way) = stretch(i);
+            }
+            let t = ((target - self.lengths[i]) * per).clamp(0.0, 1.0);
+            samples.push(from + way * t);
         }
         samples
     }
@@ -118,33 +129,55 @@ impl Ring {
         let rough = self.samples(count, 0.0);
         let stride = (count / 32).max(1);
         let cost = |shift: usize| -> f64 {
-            (0..count).step_by(stride).map(|i| before[i].distance_squared(rough[(i + shift) % count])).sum()
+            let (mut sum, mut at) = (0.0, shift);
+            for point in before.iter().step_by(stride) {
+                sum += point.distance_squared(rough[at]);
+                at += stride;
+                if at >= count {
+                    at -= count;
+                }
+            }
+            sum
         };
         let mut best = (f64::INFINITY, 0);
-        for shift in (0..count).step_by(stride) {
+        let mut look = |shift: usize| {
             let cost = cost(shift);
             if cost < best.0 * (1.0 - 1e-9) {
                 best = (cost, shift);
             }
+            best.1
+        };
+        // The cost changes slowly: first in wide steps, then around the best.
+        let wide = (count / WIDE).max(stride) / stride * stride;
+        let rough_best = (0..count).step_by(wide).fold(0, |_, shift| look(shift));
+        for step in (stride..wide).step_by(stride) {
+            look((rough_best + step) % count);
+            look((rough_best + count - step) % count);
         }
         let mut phase = best.1 as f64 / count as f64;
-        let mut samples = if best.1 == 0 { rough } else { self.samples(count, phase) };
+        let mut samples = rough;
+        samples.rotate_left(best.1);
         // Newton steps: the derivative of a sample by the phase is the tangent there.
         for _ in 0..3 {
             let (mut slope, mut bend) = (0.0, 0.0);
-            for i in 0..count {
-                let tangent =
-                    (samples[(i + 1) % count] - samples[(i + count - 1) % count]) * (0.5 * count as f64);
-                slope += (samples[i] - before[i]).dot(tangent);
+            let after = samples.iter().skip(1).chain(samples.first());
+            let last = samples.last().into_iter().chain(&samples);
+            for (((sample, before), after), last) in samples.iter().zip(before).zip(after).zip(last) {
+                let tangent = *after - *last;
+                slope += (*sample - *before).dot(tangent);
                 bend += tangent.length_squared();
             }
-            let step = if bend > 0.0 { slope / bend } else { 0.0 };
+            // The tangents are those of two samples' way.
+            let step = if bend > 0.0 { slope / (bend * 0.5 * count as f64) } else { 0.0 };
             // Equal rings differ by rounding only: they stay as they are.
             if step.abs() < 1e-9 {
                 break;
             }
             phase -= step.clamp(-0.5 / count as f64, 0.5 / count as f64);
             samples = self.samples(count, phase);
+            if step.abs() * (count as f64) < NEAR {
+                break;
+            }
         }
         samples
     }

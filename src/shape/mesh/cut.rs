@@ -142,8 +142,10 @@ impl Mesh {
         progress: &mut impl FnMut(u64, u64),
     ) -> Result<Cut, Fault> {
         let row = plan.gauge.height;
-        let mut ends = Ends::find(self, row, plan.start, &plan.poles);
+        let find = || Ends::find(self, row, plan.start, &plan.poles);
+        let (mut ends, flows) = rayon::join(find, || Flows::new(self, strict));
         ends.strict = strict;
+        let mut flows = Some(flows);
         if ends.others.is_empty() {
             return Err(Fault::NoEnds { at: self.middle(&ends.start) });
         }
@@ -153,7 +155,7 @@ impl Mesh {
         let mut rest: Option<Self> = None;
         let pieces = loop {
             let mesh = rest.as_ref().unwrap_or(self);
-            let mut flows = Flows::new(mesh, &ends);
+            let mut flows = flows.take().unwrap_or_else(|| Flows::new(mesh, strict));
             // Limbs that are to be cut off stay on the mesh for now.
             let mut off: Vec<Root> = Vec::new();
             let pieces = loop {
@@ -259,13 +261,14 @@ impl Mesh {
     /// The field, with every closed end at its extremum. The farthest point of a bent limb lies on its inner side, so
     /// the flow is poured a second time around where the first one says that the middle is.
     fn flow(&self, plan: &Plan, flows: &mut Flows<'_>, ends: &mut Ends) -> Vec<f64> {
-        let before = ends.clone();
+        let places = |ends: &Ends| -> Vec<DVec3> {
+            ends.others.iter().chain([&ends.start]).map(|tip| self.middle(tip)).collect()
+        };
+        let before = places(ends);
         let field = flows.field(plan.field, ends);
         self.climb(&field, ends);
-        let far = |a: &Tip, b: &Tip| self.middle(a).distance(self.middle(b)) > 0.5 * plan.gauge.height;
-        let moved =
-            far(&before.start, &ends.start) || before.others.iter().zip(&ends.others).any(|(a, b)| far(a, b));
-        if !moved {
+        let far = |(a, b): (&DVec3, &DVec3)| a.distance(*b) > 0.5 * plan.gauge.height;
+        if !before.iter().zip(&places(ends)).any(far) {
             return field;
         }
         let field = flows.field(plan.field, ends);

@@ -89,11 +89,11 @@ impl Ends {
                 None => Tip::new(vec![vertex], false),
             }
         };
-        let start = match start {
-            Some(point) => nearest(point),
+        let (start, known) = match start {
+            Some(point) => (nearest(point), None),
             None => Self::broadest(mesh, row),
         };
-        let distance = mesh.distances(&start.ring, f64::INFINITY);
+        let distance = known.unwrap_or_else(|| mesh.distances(&start.ring, f64::INFINITY));
         let mut others: Vec<Tip> = mesh
             .boundaries()
             .iter()
@@ -164,22 +164,24 @@ impl Ends {
         self.others.sort_by(|a, b| b.at.total_cmp(&a.at).then(a.ring.cmp(&b.ring)));
     }
 
-    /// The end to begin at: the largest opening, else the broadest tip; of those that are alike the lowest.
-    fn broadest(mesh: &Mesh, row: f64) -> Tip {
+    /// The end to begin at: the largest opening, else the broadest tip; of those that are alike the lowest. With the
+    /// distances from there, if they are known.
+    fn broadest(mesh: &Mesh, row: f64) -> (Tip, Option<Vec<f64>>) {
         let height =
             |tip: &Tip| tip.ring.iter().map(|v| mesh.point(*v).z).sum::<f64>() / tip.ring.len() as f64;
+        let mut known = None;
         let (tips, sizes): (Vec<Tip>, Vec<f64>) = if mesh.boundaries().is_empty() {
-            let far = |from: u32| {
-                let distance = mesh.distances(&[from], f64::INFINITY);
-                let most =
-                    (0..distance.len()).max_by(|a, b| distance[*a].total_cmp(&distance[*b])).unwrap_or(0);
-                (most as u32, distance)
-            };
             let lowest = (0..mesh.points.len() as u32)
                 .min_by(|a, b| mesh.point(*a).z.total_cmp(&mesh.point(*b).z))
                 .unwrap_or(0);
-            let (one, _) = far(lowest);
-            let (two, distance) = far(one);
+            let farthest = |distance: &[f64]| -> u32 {
+                let most = (0..distance.len()).max_by(|a, b| distance[*a].total_cmp(&distance[*b]));
+                most.unwrap_or(0) as u32
+            };
+            // From one end to the other and back: most often it is the lowest one in the end.
+            let one = farthest(&mesh.distances(&[mesh.far_from(lowest)], f64::INFINITY));
+            let distance = mesh.distances(&[one], f64::INFINITY);
+            let two = farthest(&distance);
             let mut tips: Vec<u32> = mesh.tips(&distance, row).into_iter().map(|(tip, _)| tip).collect();
             tips.push(one);
             if !tips.contains(&two) {
@@ -192,6 +194,7 @@ impl Ends {
                 (0..mesh.faces.len() as u32).filter(|f| inside(*f)).map(|f| mesh.normal(f).length()).sum()
             };
             let sizes = tips.iter().map(|tip| size(*tip)).collect();
+            known = Some((one, distance));
             (tips.into_iter().map(|tip| Tip::new(vec![tip], false)).collect(), sizes)
         } else {
             let rings = mesh.boundaries();
@@ -201,7 +204,9 @@ impl Ends {
         let most = sizes.iter().copied().fold(0.0, f64::max);
         let broad = tips.into_iter().zip(sizes).filter(|(_, size)| *size >= BROAD * most).map(|(tip, _)| tip);
         let lowest = broad.min_by(|a, b| height(a).total_cmp(&height(b)).then(a.ring.cmp(&b.ring)));
-        lowest.unwrap_or(Tip::new(vec![0], false))
+        let lowest = lowest.unwrap_or(Tip::new(vec![0], false));
+        let known = known.filter(|(vertex, _)| lowest.ring == [*vertex]).map(|(_, distance)| distance);
+        (lowest, known)
     }
 }
 

@@ -99,11 +99,14 @@ impl Source {
 }
 
 impl<'m> Flows<'m> {
-    /// Prepares for flows between the ends: some may move or be added, but openings stay what they are.
-    pub(super) fn new(mesh: &'m Mesh, ends: &Ends) -> Self {
+    /// Prepares for flows between any ends: openings are what they are, and tips may lie anywhere. The ground is an opening,
+    /// else some vertex.
+    pub(super) fn new(mesh: &'m Mesh, strict: bool) -> Self {
         let mut slot = vec![NONE; mesh.points.len()];
-        let mut groups = Groups { rings: vec![ends.start.ring.clone()], singles: Vec::new() };
-        groups.rings.extend(ends.others.iter().filter(|tip| tip.open).map(|tip| tip.ring.clone()));
+        let mut groups = Groups { rings: mesh.boundaries().to_vec(), singles: Vec::new() };
+        if groups.rings.is_empty() {
+            groups.rings.push(vec![0]);
+        }
         for (group, ring) in (0..).zip(&groups.rings) {
             for vertex in ring {
                 slot[*vertex as usize] = group;
@@ -117,7 +120,7 @@ impl<'m> Flows<'m> {
         }
         let weights = mesh.weights();
         let system = system(mesh, &groups, &slot, &weights);
-        let (strict, sources) = (ends.strict, BTreeMap::new());
+        let sources = BTreeMap::new();
         Self { mesh, slot, groups, weights, system, strict, mended: 0, sources }
     }
 

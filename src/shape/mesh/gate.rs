@@ -241,10 +241,13 @@ fn pieces(soup: &Soup, partners: &[u32]) -> Result<(), Fault> {
     let count = soup.faces.len();
     let mut leader: Vec<u32> = (0..count as u32).collect();
     for (h, &partner) in partners.iter().enumerate() {
-        if partner != NONE {
+        if partner != NONE && h < partner as usize {
             let (a, b) = (find(&mut leader, h as u32 / 3), find(&mut leader, partner / 3));
             leader[a.max(b) as usize] = a.min(b);
         }
+    }
+    if (0..count as u32).all(|face| find(&mut leader, face) == 0) {
+        return Ok(());
     }
     let mut sizes = vec![(0_u32, DVec3::ZERO); count];
     for face in 0..count as u32 {
@@ -254,9 +257,6 @@ fn pieces(soup: &Soup, partners: &[u32]) -> Result<(), Fault> {
     }
     let mut found: Vec<(u32, DVec3)> =
         sizes.into_iter().filter(|size| size.0 > 0).map(|(n, sum)| (n, sum / f64::from(n))).collect();
-    if found.len() < 2 {
-        return Ok(());
-    }
     let count = found.len() as u32;
     found.sort_by_key(|found| std::cmp::Reverse(found.0));
     found.truncate(8);

@@ -1,13 +1,31 @@
 //! Distances along the surface, by fast marching (Kimmel and Sethian 1998).
 
 use super::Mesh;
+use super::soup::NONE;
 use glam::DVec3;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+/// What distances are measured along.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Along {
+    Faces,
+    Edges,
+}
+
 impl Mesh {
     /// Distance of every vertex from the nearest source along the surface, in units of the mesh; infinite beyond `limit`.
     pub(super) fn distances(&self, sources: &[u32], limit: f64) -> Vec<f64> {
+        self.march(sources, limit, Along::Faces)
+    }
+
+    /// The vertex farthest from another one along edges.
+    pub(super) fn far_from(&self, vertex: u32) -> u32 {
+        let distance = self.march(&[vertex], f64::INFINITY, Along::Edges);
+        (0..distance.len()).max_by(|a, b| distance[*a].total_cmp(&distance[*b])).unwrap_or(0) as u32
+    }
+
+    fn march(&self, sources: &[u32], limit: f64, along: Along) -> Vec<f64> {
         let mut distance = vec![f64::INFINITY; self.points.len()];
         let mut known = vec![false; self.points.len()];
         let mut heap = BinaryHeap::new();
@@ -16,27 +34,46 @@ impl Mesh {
             heap.push(Reverse((0_u64, source)));
         }
         while let Some(Reverse((bits, vertex))) = heap.pop() {
-            if known[vertex as usize] || f64::from_bits(bits) > limit {
+            let time = f64::from_bits(bits);
+            if known[vertex as usize] || time > limit {
                 continue;
             }
             known[vertex as usize] = true;
+            let here = self.point(vertex);
+            let mut arrive = |target: u32, time: f64, distance: &mut [f64]| {
+                if time < distance[target as usize] {
+                    distance[target as usize] = time;
+                    heap.push(Reverse((time.to_bits(), target)));
+                }
+            };
             // Every neighbor may now be reached through a face that it shares with this vertex, or along the edge.
             for &h in self.corners(vertex) {
-                let (next, last) = (self.to(h), self.from(Self::before(h)));
-                for (target, other) in [(next, last), (last, next)] {
+                let before = Self::before(h);
+                let (next, last) = (self.to(h), self.from(before));
+                let (to_next, to_last) = (self.point(next) - here, self.point(last) - here);
+                if !known[next as usize] {
+                    arrive(next, time + to_next.length(), &mut distance);
+                }
+                // The other edge is the first one of the face beside, if there is one.
+                if self.twins[before as usize] == NONE && !known[last as usize] {
+                    arrive(last, time + to_last.length(), &mut distance);
+                }
+                if along == Along::Edges {
+                    continue;
+                }
+                for (target, other, way, side) in
+                    [(next, last, to_next, to_last), (last, next, to_last, to_next)]
+                {
                     if known[target as usize] {
                         continue;
                     }
-                    let mut best =
-                        distance[vertex as usize] + self.point(vertex).distance(self.point(target));
                     if known[other as usize] {
-                        best = best.min(self.through(target, vertex, other, &distance));
+                        if let Some(time) = front([-way, side - way], [time, distance[other as usize]]) {
+                            arrive(target, time, &mut distance);
+                        }
                     } else {
-                        best = best.min(self.unfolded(h, target, vertex, &distance, &known));
-                    }
-                    if best < distance[target as usize] {
-                        distance[target as usize] = best;
-                        heap.push(Reverse((best.to_bits(), target)));
+                        let time = self.unfolded(h, target, vertex, &distance, &known);
+                        arrive(target, time, &mut distance);
                     }
                 }
             }
@@ -49,15 +86,6 @@ impl Mesh {
         distance
     }
 
-    /// Distance at `target` by the straight front that passes two vertices of its face.
-    fn through(&self, target: u32, a: u32, b: u32, distance: &[f64]) -> f64 {
-        front(
-            self.point(target),
-            [self.point(a), self.point(b)],
-            [distance[a as usize], distance[b as usize]],
-        )
-    }
-
     /// Distance at `target` when of its face with half-edge `h` only one vertex is known: a front over the edge between
     /// that vertex and the one across, unfolded into the plane of the face. Helps where the angle at the target is wide.
     fn unfolded(&self, h: u32, target: u32, from: u32, distance: &[f64], known: &[bool]) -> f64 {
@@ -66,7 +94,7 @@ impl Mesh {
         let side = (3 * face..3 * face + 3).find(|s| self.from(*s) != target && self.to(*s) != target);
         let Some(side) = side else { return f64::INFINITY };
         let twin = self.twins[side as usize];
-        if twin == super::soup::NONE {
+        if twin == NONE {
             return f64::INFINITY;
         }
         let apex = self.from(Self::before(twin));
@@ -89,23 +117,24 @@ impl Mesh {
         if !(0.0..=a.distance(b)).contains(&place) {
             return f64::INFINITY;
         }
-        front(t, [self.point(from), flat], [distance[from as usize], distance[apex as usize]])
+        let arms = [self.point(from) - t, flat - t];
+        let times = [distance[from as usize], distance[apex as usize]];
+        front(arms, times).unwrap_or_else(|| times[1] + arms[1].length())
     }
 }
 
-/// When a straight front that passes `points` at `times` with speed 1 passes the target; along the edges where it would
-/// come from outside of the triangle.
-fn front(target: DVec3, points: [DVec3; 2], times: [f64; 2]) -> f64 {
-    let [a, b] = points.map(|p| p - target);
-    let along = (times[0] + a.length()).min(times[1] + b.length());
+/// When a straight front that passes two points at `times` with speed 1 passes the third corner of their triangle, from
+/// which `arms` lead to them; `None` where it would come from outside of the triangle.
+fn front([a, b]: [DVec3; 2], times: [f64; 2]) -> Option<f64> {
     // In the plane of the triangle: n with n . a = t0 - t and n . b = t1 - t, |n| = 1. With the inverse Gram matrix Q and
     // s = sum, t^2 (1 Q 1) - 2 t (1 Q T) + T Q T = 1.
     let (aa, ab, bb) = (a.length_squared(), a.dot(b), b.length_squared());
     let det = aa * bb - ab * ab;
     if det <= 1e-12 * aa * bb {
-        return along;
+        return None;
     }
-    let (qaa, qab, qbb) = (bb / det, -ab / det, aa / det);
+    let inverse = 1.0 / det;
+    let (qaa, qab, qbb) = (bb * inverse, -ab * inverse, aa * inverse);
     let one = [qaa + qab, qab + qbb];
     let (x, y, z) = (
         one[0] + one[1],
@@ -114,13 +143,11 @@ fn front(target: DVec3, points: [DVec3; 2], times: [f64; 2]) -> f64 {
     );
     let root = y * y - x * z;
     if root < 0.0 || x <= 0.0 {
-        return along;
+        return None;
     }
     let time = (y + root.sqrt()) / x;
     // The front comes through the edge when both weights of its direction are against it.
     let (da, db) = (times[0] - time, times[1] - time);
-    if qaa * da + qab * db > 0.0 || qab * da + qbb * db > 0.0 || time < times[0].max(times[1]) {
-        return along;
-    }
-    time.min(along)
+    let through = qaa * da + qab * db <= 0.0 && qab * da + qbb * db <= 0.0;
+    (through && time >= times[0].max(times[1])).then_some(time)
 }

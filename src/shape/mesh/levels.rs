@@ -10,7 +10,7 @@ const MOST_LEVELS: usize = 8192;
 /// Most levels at which there may be no line.
 const MOST_MISSED: u32 = 64;
 /// Samples by which level lines are compared.
-const SAMPLES: usize = 64;
+const SAMPLES: usize = 32;
 
 /// What level lines are taken from.
 pub(super) struct Levels<'m> {

@@ -161,7 +161,7 @@ impl Mesh {
                     } else {
                         // It bore other limbs, or one has been too near.
                         let root =
-                            mesh.root(&mut Flows::new(mesh, &ends), &ends, which, plan.gauge.height)?;
+                            mesh.root(&mut Flows::new(mesh, ends.strict), &ends, which, plan.gauge.height)?;
                         let tip = ends.others[which].clone();
                         mesh.sever(&ends, which, &root, (mesh, &tip, &root), plan)?
                     }

@@ -96,9 +96,14 @@ impl Mesh {
         &self.leaving[self.starts[vertex as usize] as usize..self.starts[vertex as usize + 1] as usize]
     }
 
-    /// The neighbors of a vertex; those across two faces come twice.
+    /// The neighbors of a vertex.
     pub(super) fn neighbors(&self, vertex: u32) -> impl Iterator<Item = u32> {
-        self.corners(vertex).iter().flat_map(|&h| [self.to(h), self.from(Self::before(h))])
+        let open = |h: &u32| self.twins[Self::before(*h) as usize] == NONE;
+        let corners = self.corners(vertex);
+        // Along an open edge the half-edge runs the other way only.
+        let behind = if self.boundaries.is_empty() { &[] } else { corners };
+        let behind = behind.iter().filter(move |h| open(h)).map(|h| self.from(Self::before(*h)));
+        corners.iter().map(|h| self.to(*h)).chain(behind)
     }
 
     /// The number of a vertex in the file, from 1.

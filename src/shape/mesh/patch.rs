@@ -7,6 +7,8 @@ use glam::{DMat3, DVec3};
 const MOST: usize = 40;
 /// Steps to the surface.
 const STEPS: u32 = 8;
+/// A step of this share of the patch is the last one.
+const NEAR: f64 = 1e-4;
 
 /// The function, in coordinates that are centered and scaled.
 #[derive(Clone, Debug)]
@@ -85,7 +87,7 @@ impl Patch {
             let (value, slope) = self.at(p);
             let step = -slope * (value / slope.length_squared().max(1e-6));
             p += step * (0.3 / step.length().max(0.3));
-            if step.length() < 1e-6 {
+            if step.length() < NEAR {
                 break;
             }
         }
