@@ -1,7 +1,8 @@
 //! Where a branch leaves its parent: the rim in which the two tubes meet, and the part of the branch beyond it.
 
 use super::solid::{Foot, Solid};
-use super::{Jet, ParametricSurface};
+use super::stack::Stack;
+use super::{End, Jet, ParametricSurface};
 use crate::math;
 use glam::DVec3;
 
@@ -16,6 +17,9 @@ const BACKWARD: f64 = 0.75;
 const STRETCH: f64 = 2.0;
 const NEARLY: f64 = 1e-5;
 const BETWEEN: u32 = 5;
+/// How far such a limb is continued back at most, against its distance; and least distance of its next row, in rows.
+const BACK: f64 = 2.5;
+const LEAST_STEP: f64 = 0.5;
 /// Depth (mm) at which tubes that touch begin to cross.
 const TOUCH: f64 = 1e-3;
 /// Share of a branch next to its rim that is not asked whether it lies in the parent.
@@ -99,71 +103,7 @@ impl<S: ParametricSurface> Branch<S> {
         Ok(Self::along(sharp.surface, places, &feet, [girth, length], [width, give]))
     }
 
-    /// Cuts off a branch that begins as a part of its parent's surface: it leaves where it lies farther than `reach` (mm)
-    /// from the parent. Otherwise as [`Branch::new`].
-    pub(crate) fn leaving(
-        surface: S,
-        parent: &Solid<'_>,
-        [width, give]: [f64; 2],
-        reach: f64,
-    ) -> Result<Self, Misfit> {
-        let mut places = Vec::with_capacity(AROUND);
-        let mut feet = Vec::with_capacity(AROUND);
-        let mut lost = 0;
-        let mut first = None;
-        let length = super::length_along(&surface, 0.0, 0.0..1.0, 8).max(1e-9);
-        for k in 0..AROUND {
-            let v = k as f64 / AROUND as f64;
-            let begin = surface.point(0.0, v);
-            // Beside the foot of the line before, if it lies there.
-            let beside = first.map(|foot: Foot| parent.refine_to(begin, foot.u, foot.v, NEARLY));
-            let mut foot =
-                beside.filter(|foot| foot.distance.abs() < reach).unwrap_or_else(|| parent.foot(begin));
-            first = Some(foot);
-            let next_to = |u: f64, foot: &Foot| parent.refine_to(surface.point(u, v), foot.u, foot.v, NEARLY);
-            let (mut near, mut far) = (0.0, None);
-            while near < 1.0 {
-                // As far as the line may go before it can be out of reach, if it does not stretch.
-                let safe = (reach - foot.distance.abs()) / (STRETCH * length);
-                let u = (near + safe.max(0.5 / f64::from(ALONG))).min(1.0);
-                let next = next_to(u, &foot);
-                if next.distance > reach {
-                    far = Some((u, next.distance));
-                    break;
-                }
-                (near, foot) = (u, next);
-            }
-            let Some(mut far) = far else {
-                lost += 1;
-                places.push(f64::NAN);
-                feet.push(foot);
-                continue;
-            };
-            for _ in 0..BETWEEN {
-                // The distance grows nearly evenly.
-                let share = (reach - foot.distance) / (far.1 - foot.distance).max(1e-12);
-                let middle = near + (far.0 - near) * share.clamp(0.05, 0.95);
-                let next = next_to(middle, &foot);
-                if next.distance > reach {
-                    far = (middle, next.distance);
-                } else {
-                    (near, foot) = (middle, next);
-                }
-            }
-            places.push(near);
-            feet.push(foot);
-        }
-        // A line that runs along the parent all the way leaves it where the last of the others does.
-        let last = places.iter().copied().filter(|place| !place.is_nan()).fold(0.0, f64::max);
-        if lost * 4 > AROUND || last >= 0.9 {
-            return Err(Misfit::Inside);
-        }
-        places.iter_mut().filter(|place| place.is_nan()).for_each(|place| *place = last);
-        let girth = super::girth(&surface, mean(&places), 32);
-        Ok(Self::along(surface, places, &feet, [girth, length], [width, give]))
-    }
-
-    /// A branch whose lines begin at the given places.
+    /// A branch whose lines begin at the given places, on these feet, with a rim that is rounded and leveled.
     fn along(
         surface: S,
         mut places: Vec<f64>,
@@ -173,11 +113,16 @@ impl<S: ParametricSurface> Branch<S> {
     ) -> Self {
         soften(&mut places, ROUNDED * width * AROUND as f64 / girth.max(1e-9));
         level(&mut places, give * width / length);
-        let mean = mean(&places);
+        Self { phase: first_met(feet), ..Self::from_places(surface, &places) }
+    }
+
+    /// A branch whose lines begin at the given places.
+    fn from_places(surface: S, places: &[f64]) -> Self {
+        let mean = mean(places);
         let highest = places.iter().copied().fold(mean, f64::max);
         // Rows nowhere come nearer to each other than a fifth of their mean distance.
         let ease = (0.8 * (1.0 - mean) / (highest - mean).max(1e-9) - 1.0).clamp(0.0, 1.0);
-        Self { rim: with_slopes(&places), mean, ease, phase: first_met(feet), surface }
+        Self { rim: with_slopes(places), mean, ease, phase: 0.0, surface }
     }
 
     /// The underlying u at a visible u, with its slopes by u and v.
@@ -199,6 +144,139 @@ impl<S: ParametricSurface> Branch<S> {
         let (square, cube) = (3.0 * rise - 2.0 * da - db, da + db - 2.0 * rise);
         (a + t * (da + t * (square + t * cube)), (da + t * (2.0 * square + t * 3.0 * cube)) * count as f64)
     }
+}
+
+impl Branch<Stack> {
+    /// Cuts off a branch that begins as a part of its parent's surface. It is a branch where it lies farther than `reach`
+    /// (mm) from the parent; from there it is continued straight back into it, and its rim is where it comes out.
+    /// Rows of samples lie `row` (mm) apart or more. Otherwise as [`Branch::new`].
+    pub(crate) fn leaving(
+        surface: Stack,
+        parent: &Solid<'_>,
+        [width, give]: [f64; 2],
+        reach: f64,
+        row: f64,
+    ) -> Result<Self, Misfit> {
+        let (mut clear, mut feet) = clear_of(&surface, parent, reach)?;
+        let girth = super::girth(&surface, mean(&clear), 32);
+        soften(&mut clear, ROUNDED * width * AROUND as f64 / girth.max(1e-9));
+        let clear = Branch::from_places(surface, &clear);
+        let turn = |k: usize, of: usize| k as f64 / of as f64;
+        let axis: DVec3 = (0..AROUND).map(|k| clear.jet(0.0, turn(k, AROUND)).du.normalize_or_zero()).sum();
+        let axis = axis.normalize_or_zero();
+        let back: Vec<f64> = feet
+            .iter_mut()
+            .enumerate()
+            .map(|(k, foot)| way_back(clear.point(0.0, turn(k, AROUND)), axis, foot, parent, reach))
+            .collect();
+        let far = back.iter().copied().fold(0.5 * reach, f64::max) + 0.5 * reach;
+        // The way back and the branch as one tube.
+        let surface = &clear.surface;
+        let around = surface.rows().next().map_or(AROUND, <[DVec3]>::len);
+        let line = |u: f64| -> Vec<DVec3> { (0..around).map(|k| clear.point(u, turn(k, around))).collect() };
+        let first = line(0.0);
+        let mut rows = vec![first.iter().map(|point| *point - axis * far).collect(), first];
+        let closed = surface.ends()[1] == End::Closed;
+        // The rows of the branch where they lie, the first one not right beside its begin.
+        let (places, least) = (surface.places(), LEAST_STEP * row / surface.length());
+        let places = &places[..places.len() - usize::from(closed)];
+        let rest = places.iter().filter(|place| **place > clear.mean + least);
+        rows.extend(rest.map(|place| line((place - clear.mean) / (1.0 - clear.mean))));
+        let pole = closed.then(|| surface.point(1.0, 0.0));
+        let stack = Stack::of_rows(rows, [None, pole]).ok_or(Misfit::Inside)?;
+        let clear = stack.places().get(1).copied().unwrap_or(0.0);
+        let places: Vec<f64> = back.iter().map(|back| clear * (1.0 - back / far)).collect();
+        let girth = super::girth(&stack, mean(&places), 32);
+        let length = stack.length();
+        Ok(Self::along(stack, places, &feet, [girth, length], [width, give]))
+    }
+}
+
+/// How far straight back from a point of a branch its parent lies, which is no farther from it than `reach`; 0 where it
+/// lies beside that way. The foot moves there.
+fn way_back(point: DVec3, axis: DVec3, foot: &mut Foot, parent: &Solid<'_>, reach: f64) -> f64 {
+    let most = BACK * reach;
+    let look = |back: f64, foot: &Foot| parent.refine_to(point - axis * back, foot.u, foot.v, NEARLY);
+    let mut out = (0.0, look(0.0, foot));
+    let mut step = out.1.distance.max(0.0);
+    for _ in 0..BETWEEN {
+        let next = (out.0 + step).min(most);
+        let there = look(next, &out.1);
+        if there.distance <= 0.0 {
+            // Straight through the surface, or nearly.
+            let share = out.1.distance / (out.1.distance - there.distance).max(1e-12);
+            *foot = there;
+            return out.0 + (next - out.0) * share;
+        }
+        let fall = (out.1.distance - there.distance) / (next - out.0).max(1e-12);
+        step = 1.1 * there.distance / fall.max(0.25);
+        out = (next, there);
+        if there.distance < 1e-3 * reach {
+            *foot = there;
+            return next;
+        }
+        if next >= most {
+            break;
+        }
+    }
+    0.0
+}
+
+/// Where the lines of a surface lie farther than `reach` from the parent for the first time, and the feet there.
+fn clear_of(surface: &Stack, parent: &Solid<'_>, reach: f64) -> Result<(Vec<f64>, Vec<Foot>), Misfit> {
+    let mut places = Vec::with_capacity(AROUND);
+    let mut feet = Vec::with_capacity(AROUND);
+    let mut lost = 0;
+    let mut first = None;
+    let length = super::length_along(surface, 0.0, 0.0..1.0, 8).max(1e-9);
+    for k in 0..AROUND {
+        let v = k as f64 / AROUND as f64;
+        let begin = surface.point(0.0, v);
+        // Beside the foot of the line before, if it lies there.
+        let beside = first.map(|foot: Foot| parent.refine_to(begin, foot.u, foot.v, NEARLY));
+        let mut foot =
+            beside.filter(|foot| foot.distance.abs() < reach).unwrap_or_else(|| parent.foot(begin));
+        first = Some(foot);
+        let next_to = |u: f64, foot: &Foot| parent.refine_to(surface.point(u, v), foot.u, foot.v, NEARLY);
+        let (mut near, mut far) = (0.0, None);
+        while near < 1.0 {
+            // As far as the line may go before it can be out of reach, if it does not stretch.
+            let safe = (reach - foot.distance.abs()) / (STRETCH * length);
+            let u = (near + safe.max(0.5 / f64::from(ALONG))).min(1.0);
+            let next = next_to(u, &foot);
+            if next.distance > reach {
+                far = Some((u, next.distance));
+                break;
+            }
+            (near, foot) = (u, next);
+        }
+        let Some(mut far) = far else {
+            lost += 1;
+            places.push(f64::NAN);
+            feet.push(foot);
+            continue;
+        };
+        for _ in 0..BETWEEN {
+            // The distance grows nearly evenly.
+            let share = (reach - foot.distance) / (far.1 - foot.distance).max(1e-12);
+            let middle = near + (far.0 - near) * share.clamp(0.05, 0.95);
+            let next = next_to(middle, &foot);
+            if next.distance > reach {
+                far = (middle, next.distance);
+            } else {
+                (near, foot) = (middle, next);
+            }
+        }
+        places.push(near);
+        feet.push(foot);
+    }
+    // A line that runs along the parent all the way leaves it where the last of the others does.
+    let last = places.iter().copied().filter(|place| !place.is_nan()).fold(0.0, f64::max);
+    if lost * 4 > AROUND || last >= 0.9 {
+        return Err(Misfit::Inside);
+    }
+    places.iter_mut().filter(|place| place.is_nan()).for_each(|place| *place = last);
+    Ok((places, feet))
 }
 
 impl<S: ParametricSurface> ParametricSurface for Branch<S> {

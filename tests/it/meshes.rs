@@ -103,10 +103,11 @@ fn covers(name: &str, shape: Shape, size: f64) {
         // Stitches are straight: ten of them around a thin limb, and its drawn tip, lie inside of the round surface.
         let widest =
             (0..=16).map(|k| girth(&*tube.surface, f64::from(k) / 16.0, 32) / size).fold(0.0, f64::max);
-        let least = if widest < 13.0 { 0.92 } else { 0.97 };
+        // And in the sixty stitches of an ear every shaping shows.
+        let (least, skew) = if widest < 13.0 { (0.95, 0.17) } else { (0.97, 0.12) };
         let name = format!("{name}, {}: {widest:.1} stitches around", tube.name);
         assert!((least..=1.03).contains(&figures.coverage), "{name}: {}", figures.coverage);
-        assert!(figures.skew.all.mean < 0.12, "{name}: {:?}", figures.skew.all);
+        assert!(figures.skew.all.mean < skew, "{name}: {:?}", figures.skew.all);
     }
 }
 
@@ -652,13 +653,13 @@ fn a_shape_file_with_branches_and_its_mesh_agree() {
         let same = (0..theirs.len()).min_by_key(far).expect("a tube");
         let (one, other) = (rounds_of(&one, part), rounds_of(&other, same));
         let name = format!("part {part}: {one:?} {other:?}");
-        // A limb of a mesh begins where it has left the body by a stitch, so it has a row or two less.
+        // Short rows of one take the place of rounds of the other.
         let sums = [&one, &other].map(|rounds| rounds.iter().sum::<usize>() as f64);
-        let (rows, share) = if part == 0 { (1, 0.03) } else { (2, 0.13) };
+        let rows = if part == 0 { 1 } else { 2 };
         assert!(one.len().abs_diff(other.len()) <= rows, "{name}");
-        assert!((sums[1] / sums[0] - 1.0).abs() < share, "{name}");
+        assert!((sums[1] / sums[0] - 1.0).abs() < 0.03, "{name}");
         // Away from its ends every round has as many stitches, within 3 % or one; a short row goes over some twice.
-        let middle = one.len() / 4..one.len() * 2 / 3;
+        let middle = one.len() / 4..one.len() * 3 / 5;
         let pairs: Vec<(usize, usize)> =
             one[middle.clone()].iter().copied().zip(other[middle].iter().copied()).collect();
         let short = pairs.iter().filter(|(one, other)| 3 * other > 4 * one).count();

@@ -40,7 +40,7 @@ const LEAP: f64 = 3.0;
 /// Tubes that are larger than this against their mesh do not run along it; and the samples by which that is seen.
 const MOST_AREA: f64 = 1.25;
 const SAMPLES: [u32; 2] = [8, 16];
-/// A limb leaves the surface that it grows from where it lies this far (stitches) from it.
+/// A limb is clear of the surface that it grows from where it lies this far (stitches) from it.
 const LEAVES: f64 = 1.0;
 /// How far (stitches) the first row of a limb may lie off the rim in which it meets its parent.
 const GIVE: f64 = 1.0;
@@ -437,7 +437,8 @@ fn grow(mut pieces: Vec<Piece>, limbs: Vec<limb::Limb>, plan: &Plan) -> Result<V
             .map(|(_, index, solid)| (index, solid))
             .ok_or(Fault::Fork { at })?;
         let size = plan.gauge.width.max(plan.gauge.height);
-        let branch = Branch::leaving(stack, &solid, [plan.gauge.width, GIVE], LEAVES * size);
+        let spacing = plan.gauge.height;
+        let branch = Branch::leaving(stack, &solid, [plan.gauge.width, GIVE], LEAVES * size, spacing);
         let branch = branch.map_err(|_| Fault::Fork { at })?;
         let name = letters
             .next()
