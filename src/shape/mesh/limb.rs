@@ -213,7 +213,9 @@ impl Mesh {
         });
         let (level, kept, edge) = cut.ok_or_else(fault)?;
         let edges = EDGES.map(|stitches| stitches * plan.gauge.width.min(plan.gauge.height));
-        let (mesh, place) = self.closed(&kept, &edge, (root.middle, root.girth), edges);
+        let close = || self.closed(&kept, &edge, (root.middle, root.girth), edges);
+        let (on, whole_tip, whole_root) = whole;
+        let ((mesh, place), limb) = rayon::join(close, || on.limb(whole_tip, whole_root, level, plan));
         let new = |tip: &Tip| {
             let ring = tip.ring.iter().map(|v| place[*v as usize]).filter(|v| *v != NONE).collect();
             Tip { ring, ..tip.clone() }
@@ -225,8 +227,7 @@ impl Mesh {
             return Err(fault());
         }
         let ends = Ends { start, others, off: Vec::new(), distance: Vec::new(), strict: ends.strict };
-        let (on, tip, root) = whole;
-        Ok((Severed { mesh, ends, place }, on.limb(tip, root, level, plan)))
+        Ok((Severed { mesh, ends, place }, limb))
     }
 
     /// A root on what is left of the mesh; `None` where something of the limb is gone.
