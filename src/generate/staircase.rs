@@ -30,7 +30,7 @@ pub(crate) struct Taste {
     pub ease: f64,
     /// The first base of a new round, which is not worked together with the last of the one before.
     pub marker: Option<usize>,
-    /// Increases may stand on those of the row below.
+    /// Increases may stand on those of the row below for little.
     pub stacks: bool,
 }
 
@@ -54,8 +54,8 @@ impl Taste {
 
     /// What it costs more beside those of the row below: stacked ones draw a ridge.
     pub(super) fn ridge(self, shaping: Shaping, below: &[Shaped], i: usize) -> f64 {
-        if shaping == Shaping::Inc && !self.stacks && beside(below, i, |shaped| shaped == Shaped::Inc) {
-            RIDGE
+        if shaping == Shaping::Inc && beside(below, i, |shaped| shaped == Shaped::Inc) {
+            if self.stacks { LOW_RIDGE } else { RIDGE }
         } else if self.ease > 0.0 && beside(below, i, |shaped| shaped != Shaped::No) {
             self.ease * PLAIN_RIDGE
         } else {
@@ -75,9 +75,10 @@ const WAITING_MOST: f64 = 3.6;
 /// Stitches of a usual row, and how many times dearer shapings are in long ones with full ease.
 const USUAL_ROW: f64 = 15.0;
 const DEARER: f64 = 2.0;
-/// Price of an increase beside one of the row below, which is that of a few stitches' way to a place that is clear; and of
-/// any shaping beside another with full ease.
+/// Price of an increase beside one of the row below, which is that of a few stitches' way to a place that is clear; the same
+/// where increases may stack; and of any shaping beside another with full ease.
 const RIDGE: f64 = 4.0;
+const LOW_RIDGE: f64 = 0.5;
 const PLAIN_RIDGE: f64 = 3.0;
 /// Mean squared distance from where a shaping belongs that evenly spread ones may have more with full ease.
 const EVEN: f64 = 0.6;

@@ -45,7 +45,13 @@ impl Top<'_> {
             let before = Places::of(sheet, self.mark.nodes);
             let fit = Score::of_fit(sheet);
             relaxer.relax(self.surface, sheet, self.mark, 0, effort, ends);
-            let after = Score::of_fit(sheet);
+            let mut after = Score::of_fit(sheet);
+            if after.inverted > fit.inverted {
+                // Softly, what was pressed flat opens again.
+                let soft = Ends { level: Some(Brink { firm: false, ..brink }), ..ends };
+                relaxer.relax(self.surface, sheet, self.mark, 0, effort, soft);
+                after = Score::of_fit(sheet);
+            }
             if after.inverted > fit.inverted || after.total > fit.total + PRICE {
                 return before.restore(sheet);
             }

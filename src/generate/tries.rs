@@ -27,7 +27,7 @@ pub(super) struct Judge {
     pub bar: f64,
     /// The last turn is pulled level, at the price of tiles that it may press flat.
     pub level: bool,
-    /// Increases may stand on others as if that were nothing.
+    /// Increases may stand on others for little.
     pub stacks: bool,
     /// Narrow tiles are pushed open after each row, not only in the end.
     pub opens: bool,
