@@ -53,14 +53,14 @@ const CHANGES: [Change; 12] = [
     change(0.03, 1.3, 0.6, 1.16),
     change(-0.2, 1.3, 1.3, 1.1),
     change(0.0, 1.6, 1.3, 1.15),
-    change(0.0, 1.24, 1.0, 1.16),
+    change(0.0, 1.3, 1.3, 1.0),
     change(0.3, 1.24, 1.0, 1.16),
     change(0.1, 1.0, 1.0, 1.0),
     change(0.0, 1.3, 1.3, 1.16),
-    change(0.03, 1.3, 0.6, 1.0),
+    change(0.0, 1.24, 1.0, 1.16),
     change(-0.2, 1.0, 1.0, 1.0),
+    change(-0.1, 0.9, 1.2, 1.1),
     change(-0.03, 1.3, 0.6, 0.8),
-    change(-0.1, 1.0, 1.0, 0.9),
 ];
 
 /// The options of a try, and how far around the tube its helix begins.
