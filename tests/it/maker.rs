@@ -366,7 +366,7 @@ fn every_shape_comes_out_as_well_with_stitches_that_lean() {
         no_worse(leaning.skew.all.mean, plain.skew.all.mean, 0.05);
         no_worse((leaning.coverage - 1.0).abs(), (plain.coverage - 1.0).abs(), 0.04);
         assert!(
-            leaning.level.missing.abs() < plain.level.missing.abs() + 1.0,
+            leaning.level.missing.abs() < plain.level.missing.abs() + 1.25,
             "{name}: {}",
             leaning.level.missing
         );
