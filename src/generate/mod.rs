@@ -124,7 +124,7 @@ fn lay_on(
     // A branch in a slit begins at an end of it, with as many loops below as above.
     let slit = matches!(tube.attachment, Some(Attachment { joint: Joint::Opening, .. }));
     let even = options.symmetric && loops.is_none() && !slit && is_revolution(exact);
-    let patches = if even { None } else { Patches::new(exact, gauge) };
+    let patches = if even || options.paper { None } else { Patches::new(exact, gauge) };
     let picked_up = loops.map(|loops| first_row::picked_up(exact, loops));
     let target: &dyn ParametricSurface = match &patches {
         Some(patches) => patches,
