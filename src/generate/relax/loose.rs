@@ -93,26 +93,8 @@ impl Relaxer {
         }
         self.narrow.clear();
         self.level.clear();
-        let unit = 0.5 / (scales.width * scales.height);
-        let tiles = self.columns.tiles().filter(|_| ends.opens || ends.level.is_some());
-        for corners in tiles {
-            let [b0, b1, t0, t1] = corners;
-            let id = b0 + span.low;
-            if b0 == b1 || t0 == t1 || id < span.first {
-                continue;
-            }
-            let mut tile = Narrow { corners, normal: sheet.dv[id].cross(sheet.du[id]).as_vec3a() };
-            // Most tiles are wide, and need no quotient.
-            let length = dot(tile.normal, tile.normal).sqrt();
-            if tile.share(&self.point).0 * unit < 2.0 * NARROW * length {
-                tile.normal *= unit / length.max(f32::MIN_POSITIVE);
-                let (_, by_rising, by_falling) = tile.share(&self.point);
-                let slopes = [by_rising, by_falling, by_falling, by_rising];
-                for (i, slope) in corners.into_iter().zip(slopes) {
-                    add_outer(&mut stiffness[i], slope, 4.0 * NARROW_WEIGHT);
-                }
-                self.narrow.push(tile);
-            }
+        if ends.opens || ends.level.is_some() {
+            self.stiffen_narrow(stiffness, sheet, span, scales);
         }
         if let Some(Brink { rows, top, firm }) = ends.level {
             let pull = if firm { FIRM_PULL } else { PULL };
@@ -144,6 +126,30 @@ impl Relaxer {
                 let d = Vec3A::from_vec4(*point - pole);
                 let weight = 1.0 / (scales.height * scales.height * dot(d, d).max(TINY));
                 add_outer(own, d, weight);
+            }
+        }
+    }
+
+    /// Finds the narrow tiles, and what they add to the matrices.
+    fn stiffen_narrow(&mut self, stiffness: &mut [[Vec4; 2]], sheet: &Sheet, span: &Span, scales: &Scales) {
+        let unit = 0.5 / (scales.width * scales.height);
+        for corners in self.columns.tiles() {
+            let [b0, b1, t0, t1] = corners;
+            let id = b0 + span.low;
+            if b0 == b1 || t0 == t1 || id < span.first {
+                continue;
+            }
+            let mut tile = Narrow { corners, normal: sheet.dv[id].cross(sheet.du[id]).as_vec3a() };
+            // Most tiles are wide, and need no quotient.
+            let length = dot(tile.normal, tile.normal).sqrt();
+            if tile.share(&self.point).0 * unit < 2.0 * NARROW * length {
+                tile.normal *= unit / length.max(f32::MIN_POSITIVE);
+                let (_, by_rising, by_falling) = tile.share(&self.point);
+                let slopes = [by_rising, by_falling, by_falling, by_rising];
+                for (i, slope) in corners.into_iter().zip(slopes) {
+                    add_outer(&mut stiffness[i], slope, 4.0 * NARROW_WEIGHT);
+                }
+                self.narrow.push(tile);
             }
         }
     }
