@@ -99,9 +99,32 @@ pub(crate) struct Staircase {
     /// Missing stitches left over up to each base, in stitches.
     pub rest: Vec<f64>,
     curve: Vec<f64>,
-    /// How each state was reached: shaping in the low two bits, cooldown before in the rest.
-    reached: Vec<[[u8; WAITS]; LEVELS]>,
+    /// The curve in whole stitches.
+    whole: Vec<i32>,
+    /// How the states of each base were reached, a byte a level: see [`RESTED`] and its kin.
+    reached: Vec<[u8; LEVELS]>,
 }
+
+/// The cheapest ways to one level.
+#[derive(Clone, Copy, Debug)]
+struct Ways {
+    /// By the bases that still have to be plain.
+    waits: [f64; WAITS],
+    /// By way of a shaping at this base.
+    shaped: f64,
+    /// The cheapest of all.
+    least: f64,
+}
+
+/// What it costs where no way leads.
+const LOST: f64 = f64::MAX;
+const NOWHERE: Ways = Ways { waits: [LOST; WAITS], shaped: LOST, least: LOST };
+/// In the byte of a level: the state that waits no more waited for this base,
+const RESTED: u8 = 1;
+/// the state just shaped is of a decrease, not of an increase,
+const FELL: u8 = 2;
+/// and it came from one that waited for this base.
+const EARLY: u8 = 4;
 
 impl Staircase {
     /// Plans a row. `gaps[i]` is the signed distance from the foot before to foot i in stitch widths, `below` tells
@@ -110,76 +133,92 @@ impl Staircase {
         let n = gaps.len();
         let goal = self.fill_curve(gaps, taste);
         let full = taste.price(n);
+        self.plan.clear();
+        self.plan.resize(n, Shaping::Plain);
+        self.rest.clear();
+        self.rest.extend_from_slice(&self.curve);
+        let spreads = taste.ease > 0.0 && goal.abs() >= 2;
+        if !spreads && self.curve.iter().map(|s| s * s).sum::<f64>() < full {
+            // Any shaping costs more than none.
+            return;
+        }
         let total = self.curve.last().copied().unwrap_or(0.0).abs().max(1.0);
         let cooldown = ((n as f64 / (2.0 * total)) as usize).min(COOLDOWN);
         // Even where every base is shaped, a decrease needs a plain stitch to join.
         let rested = cooldown.max(1);
-        let center = |i: usize| self.curve[i].round() as i32;
-        let mut cost = [[f64::MAX; WAITS]; LEVELS];
-        cost[REACH as usize][0] = 0.0;
+        self.whole.clear();
+        self.whole.extend(self.curve.iter().map(|s| whole(*s)));
         self.reached.clear();
-        self.reached.resize(n, [[0; WAITS]; LEVELS]);
-        let mut middle = 0;
-        let mut cheapest = 0.0;
-        let hopeless_by = HOPELESS.max(3.0 * full);
+        self.reached.resize(n, [0; LEVELS]);
+        let (mut ways, mut next) = (&mut [NOWHERE; LEVELS], &mut [NOWHERE; LEVELS]);
+        ways[REACH as usize] = START;
         // Levels that still have a way worth following.
         let mut live = [REACH as usize; 2];
-        for i in 0..n {
-            let mut next = [[f64::MAX; WAITS]; LEVELS];
-            let here = center(i);
-            let shift = middle - here;
-            let hopeless = cheapest + hopeless_by;
-            cheapest = f64::MAX;
-            let price = |shaping| full + taste.stacking(shaping, below, i);
-            let may_inc = i > 0 && allowed(Shaping::Inc, below, i);
-            let may_dec = i > 0 && allowed(Shaping::Dec, below, i) && taste.marker != Some(i);
+        let (mut middle, mut cheapest) = (0, 0.0);
+        let hopeless_by = HOPELESS.max(3.0 * full);
+        let bases = self.curve.iter().zip(&self.whole).zip(&mut self.reached);
+        for (i, ((curve, here), reached)) in bases.enumerate() {
+            let price = |shaping: Shaping| {
+                let bars = i == 0 || !allowed(shaping, below, i);
+                let marked = shaping == Shaping::Dec && taste.marker == Some(i);
+                if bars || marked { LOST } else { full + taste.stacking(shaping, below, i) }
+            };
             let (inc, dec) = (price(Shaping::Inc), price(Shaping::Dec));
-            let mut reach = [LEVELS, 0];
-            let levels = cost.iter().enumerate().take(live[1] + 1).skip(live[0]);
-            for (level, waits) in levels {
-                let to = level as i32 + shift;
-                let off = self.curve[i] - f64::from(here + to - REACH);
-                for (wait, &so_far) in waits.iter().enumerate().take(rested + 1) {
-                    if so_far > hopeless {
-                        continue;
-                    }
-                    let mut reaches = |to: i32, wait_after: usize, total: f64, shaping: Shaping| {
-                        if !(0..LEVELS as i32).contains(&to) {
-                            return;
+            let shift = middle - here;
+            let place = |level: usize, by: i32| (level as i32 + shift + by).clamp(0, LEVELS as i32) as usize;
+            let targets = place(live[0], -1)..place(live[1], 2);
+            next[targets.clone()].fill(NOWHERE);
+            for level in live[0]..=live[1] {
+                let Ways { waits: [a, b, c, d, e], least, .. } = ways[level];
+                if least > cheapest + hopeless_by {
+                    continue;
+                }
+                let off = curve - f64::from(middle + level as i32 - REACH);
+                let to = (level as i32 + shift) as usize;
+                let waited = b < a;
+                let ready = if waited { b } else { a };
+                if let (Some(next), Some(reached)) = (next.get_mut(to), reached.get_mut(to)) {
+                    let cost = off * off;
+                    next.waits = [ready + cost, c + cost, d + cost, e + cost, LOST];
+                    next.least = least + cost;
+                    *reached |= u8::from(waited) * RESTED;
+                }
+                let mut shape = |to: usize, from: f64, off: f64, price: f64, how: u8| {
+                    if let (Some(next), Some(reached)) = (next.get_mut(to), reached.get_mut(to)) {
+                        let cost = from + off * off + price;
+                        if cost < next.shaped {
+                            next.shaped = cost;
+                            *reached = *reached & RESTED | how;
                         }
-                        let to = to as usize;
-                        if total < next[to][wait_after] {
-                            next[to][wait_after] = total;
-                            self.reached[i][to][wait_after] = shaping as u8 | (wait as u8) << 2;
-                            cheapest = cheapest.min(total);
-                            reach = [reach[0].min(to), reach[1].max(to)];
-                        }
-                    };
-                    reaches(to, wait.saturating_sub(1), so_far + off * off, Shaping::Plain);
-                    if may_inc && (wait == 0 || cooldown == 0) {
-                        let off = off - 1.0;
-                        reaches(to + 1, rested, so_far + off * off + inc, Shaping::Inc);
                     }
-                    if may_dec && wait == 0 {
-                        let off = off + 1.0;
-                        reaches(to - 1, rested, so_far + off * off + dec, Shaping::Dec);
-                    }
+                };
+                let (from, early) = if cooldown == 0 && waited { (b, EARLY) } else { (a, 0) };
+                shape(to.wrapping_add(1), from, off - 1.0, inc, early);
+                shape(to.wrapping_sub(1), a, off + 1.0, dec, FELL);
+            }
+            std::mem::swap(&mut ways, &mut next);
+            cheapest = LOST;
+            live = [LEVELS, 0];
+            for to in targets {
+                let ways = &mut ways[to];
+                ways.waits[rested] = ways.shaped;
+                ways.least = ways.least.min(ways.shaped);
+                if ways.least < LOST {
+                    cheapest = cheapest.min(ways.least);
+                    live = [live[0].min(to), to];
                 }
             }
-            live = reach;
-            cost = next;
-            middle = here;
+            middle = *here;
             if live[0] > live[1] {
                 // The curve jumps by more than the levels reach: all ways are lost, and the row goes on from there.
                 live = [REACH as usize; 2];
-                cost[REACH as usize][0] = 0.0;
+                ways[REACH as usize] = START;
                 cheapest = 0.0;
             }
         }
-        self.trace_back(&cost, n);
-        if taste.ease > 0.0 && goal.abs() >= 2 {
-            let least = cost.iter().flatten().copied().fold(f64::MAX, f64::min);
-            let most = least + taste.evenness(n);
+        self.trace_back(ways, live, rested);
+        if spreads {
+            let most = cheapest + taste.evenness(n);
             let row = even::Row { curve: &self.curve, below, goal, cooldown, taste };
             if let Some(places) = row.spread(full, most) {
                 let kind = if goal > 0 { Shaping::Inc } else { Shaping::Dec };
@@ -215,35 +254,43 @@ impl Staircase {
         goal as i32
     }
 
-    fn trace_back(&mut self, cost: &[[f64; WAITS]; LEVELS], n: usize) {
-        self.plan.clear();
-        self.plan.resize(n, Shaping::Plain);
-        self.rest.clear();
-        self.rest.resize(n, 0.0);
-        let mut state = (0, 0);
-        for (level, waits) in cost.iter().enumerate() {
-            for (wait, c) in waits.iter().enumerate() {
-                if *c < cost[state.0][state.1] {
+    fn trace_back(&mut self, ways: &[Ways; LEVELS], live: [usize; 2], rested: usize) {
+        let mut state = (live[0], 0);
+        for level in live[0]..=live[1] {
+            for (wait, cost) in ways[level].waits.iter().enumerate() {
+                if *cost < ways[state.0].waits[state.1] {
                     state = (level, wait);
                 }
             }
         }
-        for i in (0..n).rev() {
-            let here = self.curve[i].round() as i32;
-            let q = here + state.0 as i32 - REACH;
+        for i in (0..self.plan.len()).rev() {
+            let (level, wait) = state;
+            let q = self.whole[i] + level as i32 - REACH;
             self.rest[i] = self.curve[i] - f64::from(q);
-            let reached = self.reached[i][state.0][state.1];
-            let (shaping, step) = match reached & 3 {
-                1 => (Shaping::Inc, 1),
-                2 => (Shaping::Dec, -1),
-                _ => (Shaping::Plain, 0),
+            let how = self.reached[i][level];
+            let (shaping, step, before) = if wait == rested {
+                let (shaping, step) = if how & FELL == 0 { (Shaping::Inc, 1) } else { (Shaping::Dec, -1) };
+                (shaping, step, usize::from(how & EARLY != 0))
+            } else if wait == 0 {
+                (Shaping::Plain, 0, usize::from(how & RESTED != 0))
+            } else {
+                (Shaping::Plain, 0, wait + 1)
             };
             self.plan[i] = shaping;
-            let before = if i == 0 { 0 } else { self.curve[i - 1].round() as i32 };
-            let level = (q - step - before + REACH).clamp(0, LEVELS as i32 - 1);
-            state = (level as usize, usize::from(reached >> 2).min(COOLDOWN));
+            let middle = if i == 0 { 0 } else { self.whole[i - 1] };
+            state = ((q - step - middle + REACH).clamp(0, LEVELS as i32 - 1) as usize, before);
         }
     }
+}
+
+/// The start of a row, and of one that goes on where all ways were lost.
+const START: Ways = Ways { waits: [0.0, LOST, LOST, LOST, LOST], shaped: LOST, least: 0.0 };
+
+/// The nearest whole number, halves away from zero; far ones are cut off.
+fn whole(x: f64) -> i32 {
+    const MOST: f64 = 1e6;
+    // The greatest number below one half, so that what lies a hair below it is not rounded up.
+    (x + 0.499_999_999_999_999_94_f64.copysign(x)).clamp(-MOST, MOST) as i32
 }
 
 /// True where a base or one beside it came about in such a way.
