@@ -39,7 +39,12 @@ pub(crate) fn graph(sheet: &Sheet, rows: &Rows, start: usize, poles: [Option<DVe
             let v = (sheet.v[old] + turn).rem_euclid(1.0);
             // A hair below zero rounds up to a whole turn.
             let v = if v < 1.0 { v } else { 0.0 };
-            *node = Node { position: sheet.point[old], u: sheet.u[old], tau: rows.tau(sheet.u[old]), v };
+            *node = Node {
+                position: sheet.point[old],
+                u: sheet.u[old],
+                tau: rows.tau(sheet.u[old], sheet.v[old]),
+                v,
+            };
         }
     }
     Graph { nodes, tiles: order.tiles, start: start as u32, pole: poles[0], end_pole: poles[1] }

@@ -3,7 +3,7 @@
 use super::rows::Rows;
 use super::sheet::{Foot, Shaped, Sheet};
 use crate::ir::Gauge;
-use crate::shape::ParametricSurface;
+use crate::shape::{ParametricSurface, girth};
 use glam::DVec3;
 
 /// Fewest stitches of an open first row.
@@ -34,29 +34,33 @@ pub(super) fn ring_size(surface: &dyn ParametricSurface, rows: &Rows, gauge: &Ga
 /// Places of the first row, at equal arc length along the first turn of the helix (paper, section 3.2); their number
 /// is a multiple of `step`.
 pub(super) fn even_places(surface: &dyn ParametricSurface, rows: &Rows, width: f64, step: u32) -> Vec<f64> {
-    const SAMPLES: usize = 720;
-    let mut lengths = Vec::with_capacity(SAMPLES + 1);
-    lengths.push(0.0);
+    const A_STITCH: f64 = 4.0;
+    const RANGE: [f64; 2] = [96.0, 720.0];
+    let stitches = girth(surface, rows.at(0.5), 24) / width;
+    let samples = (A_STITCH * stitches).clamp(RANGE[0], RANGE[1]).round() as usize;
+    let mut lengths = Vec::with_capacity(samples + 1);
+    let mut total = 0.0;
+    lengths.push(total);
     let mut before = surface.point(rows.at(0.0), 0.0);
-    for i in 1..=SAMPLES {
-        let tau = i as f64 / SAMPLES as f64;
+    for i in 1..=samples {
+        let tau = i as f64 / samples as f64;
         let point = surface.point(rows.at(tau), tau);
-        lengths.push(lengths[i - 1] + point.distance(before));
+        total += point.distance(before);
+        lengths.push(total);
         before = point;
     }
-    let total = lengths[SAMPLES];
     let step = f64::from(step.max(1));
     let count = ((total / (width * step)).round() * step).max(LEAST_AROUND) as usize;
     let mut j = 0;
     (0..count)
         .map(|i| {
             let target = total * i as f64 / count as f64;
-            while j + 1 < SAMPLES && lengths[j + 1] < target {
+            while j + 1 < samples && lengths[j + 1] < target {
                 j += 1;
             }
             let span = lengths[j + 1] - lengths[j];
             let share = if span > 0.0 { (target - lengths[j]) / span } else { 0.0 };
-            (j as f64 + share) / SAMPLES as f64
+            (j as f64 + share) / samples as f64
         })
         .collect()
 }

@@ -4,6 +4,7 @@
 //! frac tau). Nodes are open loops. Surfaces of revolution get clean repeats (`symmetric`); all others are woven
 //! row by row (`weave`). In the end all nodes settle on the surface (`relax`).
 
+mod batch;
 pub mod capunaman;
 mod even;
 mod finish;
@@ -124,7 +125,8 @@ fn lay_on(
     // A branch in a slit begins at an end of it, with as many loops below as above.
     let slit = matches!(tube.attachment, Some(Attachment { joint: Joint::Opening, .. }));
     let even = options.symmetric && loops.is_none() && !slit && is_revolution(exact);
-    let patches = if even || options.paper { None } else { Patches::new(exact, gauge) };
+    let patches =
+        if even || options.paper { None } else { Patches::new(exact, [tube.start, tube.end], gauge) };
     let picked_up = loops.map(|loops| first_row::picked_up(exact, loops));
     let target: &dyn ParametricSurface = match &patches {
         Some(patches) => patches,
@@ -179,9 +181,7 @@ fn lay_on(
                 ground.range[0] = ground.range[0].min(foot.u);
             }
             let (mut sheet, start, spread) = ground.weave(most, judge, sink)?;
-            if patches.is_some() {
-                sheet.put_on(exact, turned.by);
-            }
+            sheet.put_on(exact, turned.by);
             Some(Laid { sheet, start, spread, turn: turned.by, lifted })
         })
     }) else {

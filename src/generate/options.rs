@@ -115,6 +115,8 @@ impl Options {
             return super::paper::options(self);
         }
         match self.preset {
+            // Without sweeps there is nothing that another try could settle better.
+            Preset::Std if self.sweeps == 0 && self.window_sweeps == 0 => Self { tries: 1, ..self.clone() },
             Preset::Std => self.clone(),
             Preset::Fast => Self {
                 window: self.window.min(2),

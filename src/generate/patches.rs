@@ -5,10 +5,10 @@
 //! itself.
 
 use crate::ir::Gauge;
-use crate::shape::{Jet, ParametricSurface};
+use crate::shape::{End, Jet, ParametricSurface};
 use glam::{DVec3, Vec3A};
 
-/// Rows of patches at either end that are looked up on the surface itself, for it may have any power of u at a pole.
+/// Rows of patches at a closed end that are looked up on the surface itself, for it may have any power of u at a pole.
 const MARGIN: usize = 1;
 /// Stitches that a patch is long and wide.
 const STITCHES: f64 = 2.0;
@@ -16,7 +16,7 @@ const STITCHES: f64 = 2.0;
 const LEAST: [usize; 2] = [8, 16];
 const MOST: f64 = 30_000.0;
 /// Looks at the surface along and around that tell its size.
-const LOOKS: u32 = 10;
+const LOOKS: usize = 10;
 
 /// Position and derivatives at a corner by shares of a patch, in mm from the origin.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +27,10 @@ struct Corner {
     duv: Vec3A,
 }
 
+/// A patch: by powers of the share along it, cubics of the share around it, lowest power first.
+type Patch = [Cubic; 4];
+type Cubic = [Vec3A; 4];
+
 /// Patches over the whole of a tube.
 #[derive(Debug)]
 pub(super) struct Patches<'s> {
@@ -35,54 +39,47 @@ pub(super) struct Patches<'s> {
     /// Patches along and around.
     along: usize,
     around: usize,
-    /// By rows around; each row ends with its first corner again.
-    corners: Vec<Corner>,
+    /// Where along they begin and end.
+    first: usize,
+    last: usize,
+    /// By rows around.
+    each: Vec<Patch>,
 }
 
 impl<'s> Patches<'s> {
     /// Patches of a few stitches; `None` where these are too many, or the surface has no sound derivatives.
-    pub(super) fn new(surface: &'s dyn ParametricSurface, gauge: &Gauge) -> Option<Self> {
+    pub(super) fn new(surface: &'s dyn ParametricSurface, ends: [End; 2], gauge: &Gauge) -> Option<Self> {
         let [along, around] = Self::size(surface, gauge)?;
-        let (by_u, by_v) = (1.0 / along as f64, 1.0 / around as f64);
+        let [first, margin] = ends.map(|end| if end == End::Closed { MARGIN } else { 0 });
+        let last = along - margin;
         let origin = surface.point(0.5, 0.0);
-        let mut corners: Vec<Corner> = Vec::with_capacity((along + 1) * (around + 1));
-        // With the last row of corners, which ends the last row of patches.
-        let last = along - MARGIN;
-        for i in MARGIN..=last {
-            let row = corners.len();
-            for j in 0..around {
-                let jet = surface.jet(i as f64 * by_u, j as f64 * by_v);
-                corners.push(Corner {
-                    point: (jet.point - origin).as_vec3a(),
-                    du: (jet.du * by_u).as_vec3a(),
-                    dv: (jet.dv * by_v).as_vec3a(),
-                    duv: Vec3A::ZERO,
-                });
-            }
-            let row = &mut corners[row..];
-            for j in 0..around {
-                let beside = |k: usize| row[(j + around + k - 2) % around].du;
-                row[j].duv = ((beside(3) - beside(1)) * 8.0 - (beside(4) - beside(0))) / 12.0;
-            }
-            if !row.iter().all(|corner| [corner.point, corner.dv, corner.duv].iter().all(|d| d.is_finite())) {
+        let mut each = Vec::with_capacity((last - first) * around);
+        let mut ring = vec![Jet::default(); around];
+        let (mut below, mut corners) = (Vec::with_capacity(around), Vec::with_capacity(around));
+        for i in first..=last {
+            std::mem::swap(&mut below, &mut corners);
+            surface.ring(i as f64 / along as f64, 0.0, &mut ring);
+            fill(&mut corners, &ring, origin, 1.0 / along as f64, 1.0 / around as f64);
+            if !corners.iter().all(Corner::is_finite) {
                 return None;
             }
-            let first = row.first().copied();
-            corners.extend(first);
+            let sides = below.iter().zip(&corners);
+            let next = below.iter().zip(&corners).cycle().skip(1);
+            each.extend(sides.zip(next).map(|((a, c), (b, d))| patch([a, b, c, d])));
         }
-        Some(Self { surface, origin, along, around, corners })
+        Some(Self { surface, origin, along, around, first, last, each })
     }
 
     /// Patches along and around, for their size where rows are densest.
     fn size(surface: &dyn ParametricSurface, gauge: &Gauge) -> Option<[usize; 2]> {
         let (mut longest, mut widest) = (0.0_f64, 0.0_f64);
+        let mut ring = [Jet::default(); LOOKS];
         for i in 0..LOOKS {
-            let u = (f64::from(i) + 0.5) / f64::from(LOOKS);
-            let jets = (0..LOOKS).map(|j| surface.jet(u, f64::from(j) / f64::from(LOOKS)));
+            surface.ring((i as f64 + 0.5) / LOOKS as f64, 0.0, &mut ring);
             let (mut speed, mut girth) = (0.0_f64, 0.0);
-            for jet in jets {
+            for jet in &ring {
                 speed = speed.max(jet.du.length());
-                girth += jet.dv.length() / f64::from(LOOKS);
+                girth += jet.dv.length() / LOOKS as f64;
             }
             longest = longest.max(speed);
             widest = widest.max(girth);
@@ -96,21 +93,93 @@ impl<'s> Patches<'s> {
     }
 }
 
-/// The four cubics of Hermite at x, and their slopes: value at 0, at 1, slope at 0, at 1.
+impl Corner {
+    fn is_finite(&self) -> bool {
+        [self.point, self.dv, self.duv].iter().all(|d| d.is_finite())
+    }
+}
+
+/// The corners of a ring, with the mixed derivative by differences of fourth order.
+fn fill(corners: &mut Vec<Corner>, ring: &[Jet], origin: DVec3, by_u: f64, by_v: f64) {
+    corners.clear();
+    corners.extend(ring.iter().map(|jet| Corner {
+        point: (jet.point - origin).as_vec3a(),
+        du: (jet.du * by_u).as_vec3a(),
+        dv: (jet.dv * by_v).as_vec3a(),
+        duv: Vec3A::ZERO,
+    }));
+    let count = corners.len();
+    let [mut a, mut b, mut c, mut d] = [count - 2, count - 1, 0, 1].map(|j| corners[j].du);
+    for j in 0..count {
+        let next = if j + 2 < count { j + 2 } else { j + 2 - count };
+        let e = corners[next].du;
+        corners[j].duv = ((d - b) * 8.0 - (e - a)) / 12.0;
+        (a, b, c, d) = (b, c, d, e);
+    }
+}
+
+/// The cubic with such values and slopes at 0 and at 1.
 #[inline]
-fn hermite(x: f32) -> ([f32; 4], [f32; 4]) {
-    let rest = 1.0 - x;
-    let over = x * x * (3.0 - 2.0 * x);
-    let hill = 6.0 * x * rest;
-    (
-        [1.0 - over, over, x * rest * rest, -x * x * rest],
-        [-hill, hill, rest * (1.0 - 3.0 * x), x * (3.0 * x - 2.0)],
-    )
+fn cubic(p: Vec3A, q: Vec3A, dp: Vec3A, dq: Vec3A) -> Cubic {
+    let rise = q - p;
+    [p, dp, rise * 3.0 - dp * 2.0 - dq, dp + dq - rise * 2.0]
+}
+
+/// The patch between two corners below and two above.
+fn patch([a, b, c, d]: [&Corner; 4]) -> Patch {
+    let low = cubic(a.point, b.point, a.dv, b.dv);
+    let high = cubic(c.point, d.point, c.dv, d.dv);
+    let slope_low = cubic(a.du, b.du, a.duv, b.duv);
+    let slope_high = cubic(c.du, d.du, c.duv, d.duv);
+    let by_t: [Cubic; 4] = std::array::from_fn(|j| cubic(low[j], high[j], slope_low[j], slope_high[j]));
+    std::array::from_fn(|i| by_t.map(|powers| powers[i]))
 }
 
 #[inline]
-fn blend(c: &[f32; 4], [a, b, da, db]: [Vec3A; 4]) -> Vec3A {
-    a * c[0] + b * c[1] + da * c[2] + db * c[3]
+fn value([a, b, c, d]: &Cubic, x: f32) -> Vec3A {
+    ((*d * x + *c) * x + *b) * x + *a
+}
+
+#[inline]
+fn slope([_, b, c, d]: &Cubic, [twice, thrice]: [f32; 2]) -> Vec3A {
+    *d * thrice + *c * twice + *b
+}
+
+/// The slopes of the square and of the cube.
+#[inline]
+fn rates(x: f32) -> [f32; 2] {
+    [2.0 * x, 3.0 * x * x]
+}
+
+impl Patches<'_> {
+    /// The row of patches at u, and the share along it.
+    #[inline]
+    fn row(&self, u: f64) -> Option<(usize, f32)> {
+        let x = u * self.along as f64;
+        // No number is in no range.
+        (x >= self.first as f64 && x < self.last as f64).then(|| {
+            let i = x as usize;
+            (i - self.first, (x - i as f64) as f32)
+        })
+    }
+
+    /// The patch around, and the share of it.
+    #[inline]
+    fn column(&self, v: f64) -> (usize, f32) {
+        let whole = v as i64 as f64;
+        let y = (v - if whole > v { whole - 1.0 } else { whole }) * self.around as f64;
+        let j = (y as usize).min(self.around - 1);
+        (j, (y - j as f64) as f32)
+    }
+
+    #[inline]
+    fn jet_of(&self, point: Vec3A, du: Vec3A, dv: Vec3A) -> Jet {
+        Jet {
+            point: self.origin + point.as_dvec3(),
+            du: du.as_dvec3() * self.along as f64,
+            dv: dv.as_dvec3() * self.around as f64,
+        }
+    }
 }
 
 impl ParametricSurface for Patches<'_> {
@@ -119,34 +188,37 @@ impl ParametricSurface for Patches<'_> {
     }
 
     fn jet(&self, u: f64, v: f64) -> Jet {
-        let x = u * self.along as f64;
-        let margin = MARGIN as f64;
-        // No number is in no range.
-        if !(x >= margin && x < self.along as f64 - margin) {
-            return self.surface.jet(u, v);
-        }
-        let whole = v as i64 as f64;
-        let y = (v - if whole > v { whole - 1.0 } else { whole }) * self.around as f64;
-        let (i, j) = (x as usize - MARGIN, (y as usize).min(self.around - 1));
-        let (s, s_slope) = hermite((x - (i + MARGIN) as f64) as f32);
-        let (t, t_slope) = hermite((y - j as f64) as f32);
-        let width = self.around + 1;
-        let at = i * width + j;
-        let (Some([a, b]), Some([c, d])) =
-            (self.corners.get(at..at + 2), self.corners.get(at + width..at + width + 2))
-        else {
+        let Some((i, s)) = self.row(u) else { return self.surface.jet(u, v) };
+        let (j, t) = self.column(v);
+        let Some([a, b, c, d]) = self.each.get(i * self.around + j) else {
             return self.surface.jet(u, v);
         };
-        // Along v first: the values and the slopes by u at both rows.
-        let rows = [[a.point, b.point, a.dv, b.dv], [c.point, d.point, c.dv, d.dv]];
-        let slopes = [[a.du, b.du, a.duv, b.duv], [c.du, d.du, c.duv, d.duv]];
-        let at =
-            |t: &[f32; 4]| [blend(t, rows[0]), blend(t, rows[1]), blend(t, slopes[0]), blend(t, slopes[1])];
-        let (value, by_v) = (at(&t), at(&t_slope));
-        Jet {
-            point: self.origin + blend(&s, value).as_dvec3(),
-            du: blend(&s_slope, value).as_dvec3() * self.along as f64,
-            dv: blend(&s, by_v).as_dvec3() * self.around as f64,
+        let t_rates = rates(t);
+        let along = [value(a, t), value(b, t), value(c, t), value(d, t)];
+        let around = [slope(a, t_rates), slope(b, t_rates), slope(c, t_rates), slope(d, t_rates)];
+        self.jet_of(value(&along, s), slope(&along, rates(s)), value(&around, s))
+    }
+
+    fn ring(&self, u: f64, from: f64, jets: &mut [Jet]) {
+        let row = self.row(u).and_then(|(i, s)| {
+            let row = self.each.get(i * self.around..(i + 1) * self.around)?;
+            Some((row, s))
+        });
+        let Some((row, s)) = row else { return self.surface.ring(u, from, jets) };
+        let s_rates = rates(s);
+        // At this place along each of them, what is left are cubics around.
+        let columns: Vec<(Cubic, Cubic)> = row
+            .iter()
+            .map(|[a, b, c, d]| {
+                let along: [Cubic; 4] = std::array::from_fn(|j| [a[j], b[j], c[j], d[j]]);
+                (along.each_ref().map(|along| value(along, s)), along.map(|along| slope(&along, s_rates)))
+            })
+            .collect();
+        let count = jets.len() as f64;
+        for (k, jet) in jets.iter_mut().enumerate() {
+            let (j, t) = self.column(from + k as f64 / count);
+            let (values, slopes) = &columns[j];
+            *jet = self.jet_of(value(values, t), value(slopes, t), slope(values, rates(t)));
         }
     }
 }
@@ -160,7 +232,7 @@ mod tests {
     fn patches_differ_from_the_surface_by_next_to_nothing() {
         let surface = TorusArc { major: 30.0, minor: 12.0, angle: 2.0 };
         let gauge = Gauge::new(3.0, 3.0);
-        let patches = Patches::new(&surface, &gauge).unwrap();
+        let patches = Patches::new(&surface, [End::Open; 2], &gauge).unwrap();
         for i in 0..1000 {
             let (u, v) = (f64::from(i) / 999.0, 0.618 * f64::from(i) - 100.0);
             let (near, exact) = (patches.jet(u, v), surface.jet(u, v));

@@ -71,9 +71,21 @@ impl Rows {
         self.knots[i] + (x - i as f64) * (self.knots[i + 1] - self.knots[i])
     }
 
-    /// The row number of a surface parameter: the inverse of [`Rows::at`].
-    pub(crate) fn tau(&self, u: f64) -> f64 {
-        let i = self.knots.partition_point(|knot| *knot <= u).clamp(1, self.knots.len() - 1) - 1;
+    /// The row number of a surface parameter: the inverse of [`Rows::at`]. It is looked for from row `near` on.
+    pub(crate) fn tau(&self, u: f64, near: f64) -> f64 {
+        const FAR: usize = 8;
+        let last = self.knots.len() - 2;
+        let mut i = (((near + self.lead) * self.scale) as usize).min(last);
+        let first = i;
+        while i < last && self.knots[i + 1] <= u && i < first + FAR {
+            i += 1;
+        }
+        while i > 0 && self.knots[i] > u && i + FAR > first {
+            i -= 1;
+        }
+        if i.abs_diff(first) == FAR {
+            i = self.knots.partition_point(|knot| *knot <= u).clamp(1, last + 1) - 1;
+        }
         let x = i as f64 + (u - self.knots[i]) / (self.knots[i + 1] - self.knots[i]);
         x / self.scale - self.lead
     }
@@ -96,7 +108,6 @@ fn mean_girth(surface: &dyn ParametricSurface, knots: &[f64]) -> f64 {
 /// end: where rows lie closer than their spacing it gains on them, and short rows on the other side cannot hold it back; where
 /// they lie farther apart, short rows keep it level. `None` when the surface has no length.
 fn table(surface: &dyn ParametricSurface, height: f64, mean_share: f64) -> Option<(Vec<f64>, f64)> {
-    let speed = |u: f64, k: usize| row_speed(&surface.jet(inside(u), k as f64 / AROUND as f64));
     let spacing = |speeds: &[f64]| {
         let least = speeds.iter().copied().fold(f64::MAX, f64::min);
         let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
@@ -105,11 +116,14 @@ fn table(surface: &dyn ParametricSurface, height: f64, mean_share: f64) -> Optio
     let mut knots = vec![0.0];
     let mut u = 0.0;
     let mut ahead = [0.0_f64; AROUND];
+    let mut few = [Jet::default(); FEW];
+    let mut all = [Jet::default(); AROUND];
     while u < 1.0 {
         // A few looks lead to the middle of the row, where all are taken.
-        let few: [f64; FEW] = std::array::from_fn(|k| speed(u, k * (AROUND / FEW)));
-        let middle = (u + 0.5 * height / spacing(&few)).min(1.0);
-        let speeds: [f64; AROUND] = std::array::from_fn(|k| speed(middle, k));
+        surface.ring(inside(u), 0.0, &mut few);
+        let middle = (u + 0.5 * height / spacing(&few.each_ref().map(row_speed))).min(1.0);
+        surface.ring(inside(middle), 0.0, &mut all);
+        let speeds = all.each_ref().map(row_speed);
         let spacing = spacing(&speeds);
         let step = height / spacing;
         if !step.is_finite() || step <= 0.0 || knots.len() > MAX_ROWS {

@@ -15,15 +15,20 @@ pub(super) struct Turned<'s> {
 impl<'s> Turned<'s> {
     /// Turns a surface so that it begins on its slowest side. Where all sides are alike it stays as it is.
     pub(super) fn to_slowest_side(surface: &'s dyn ParametricSurface) -> Self {
-        const SIDES: u32 = 48;
+        const SIDES: usize = 48;
         const STATIONS: u32 = 16;
+        let mut speeds = [0.0; SIDES];
+        let mut ring = [Jet::default(); SIDES];
+        for i in 0..STATIONS {
+            surface.ring((f64::from(i) + 0.5) / f64::from(STATIONS), 0.0, &mut ring);
+            for (sum, jet) in speeds.iter_mut().zip(&ring) {
+                *sum += row_speed(jet);
+            }
+        }
         let mut best = (f64::MAX, 0.0);
-        for side in 0..SIDES {
-            let v = f64::from(side) / f64::from(SIDES);
-            let stations = (0..STATIONS).map(|i| (f64::from(i) + 0.5) / f64::from(STATIONS));
-            let speed: f64 = stations.map(|u| row_speed(&surface.jet(u, v))).sum();
+        for (side, speed) in speeds.into_iter().enumerate() {
             if speed < best.0 - 1e-6 * speed {
-                best = (speed, v);
+                best = (speed, side as f64 / SIDES as f64);
             }
         }
         Self { surface, by: best.1 }
@@ -36,5 +41,8 @@ impl ParametricSurface for Turned<'_> {
     }
     fn jet(&self, u: f64, v: f64) -> Jet {
         self.surface.jet(u, v + self.by)
+    }
+    fn ring(&self, u: f64, from: f64, jets: &mut [Jet]) {
+        self.surface.ring(u, from + self.by, jets);
     }
 }

@@ -157,11 +157,10 @@ impl Sheet {
         self.shaped[i] = Shaped::Dec;
     }
 
-    /// Puts all nodes on another surface at the same parameters, with v farther on by so much.
+    /// Puts all nodes on another surface at the same parameters, with v farther on by so much. Derivatives stay.
     pub(crate) fn put_on(&mut self, surface: &dyn ParametricSurface, further: f64) {
-        for i in 0..self.len() {
-            let jet = surface.jet(self.u[i], self.v[i] + further);
-            (self.point[i], self.du[i], self.dv[i]) = (jet.point, jet.du, jet.dv);
+        for ((point, u), v) in self.point.iter_mut().zip(&self.u).zip(&self.v) {
+            *point = surface.point(*u, v + further);
         }
     }
 

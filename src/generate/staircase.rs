@@ -168,8 +168,8 @@ impl Staircase {
             let place = |level: usize, by: i32| (level as i32 + shift + by).clamp(0, LEVELS as i32) as usize;
             let targets = place(live[0], -1)..place(live[1], 2);
             next[targets.clone()].fill(NOWHERE);
-            for level in live[0]..=live[1] {
-                let Ways { waits: [a, b, c, d, e], least, .. } = ways[level];
+            for (level, from) in ways.iter().enumerate().take(live[1] + 1).skip(live[0]) {
+                let Ways { waits: [a, b, c, d, e], least, .. } = *from;
                 if least > cheapest + hopeless_by {
                     continue;
                 }

@@ -66,7 +66,7 @@ pub(super) fn first(ring: &[NodeId]) -> usize {
 
 /// Rows between the highest and the lowest open loop, each against its place on the helix.
 pub(super) fn spread(sheet: &Sheet, rows: &Rows, ring: &[NodeId]) -> f64 {
-    let off = ring.iter().map(|id| *id as usize).map(|i| sheet.v[i] - rows.tau(sheet.u[i]));
+    let off = ring.iter().map(|id| *id as usize).map(|i| sheet.v[i] - rows.tau(sheet.u[i], sheet.v[i]));
     let (low, high) = off.fold((f64::MAX, f64::MIN), |(low, high), off| (low.min(off), high.max(off)));
     (high - low).max(0.0)
 }

@@ -86,6 +86,10 @@ pub(super) fn best(
 ) -> Option<Laid> {
     let tries = if expected > MOST_STITCHES { 1 } else { options.tries as usize };
     let most = if options.tries > 1 && expected <= MOST_RESCUED { tries + RESCUES } else { tries };
+    if most == 1 {
+        let judge = Judge { bar: f64::INFINITY, level: true, stacks: false, opens: false };
+        return lay(options, 0.0, judge);
+    }
     let mut best: Option<(Score, Laid)> = None;
     for index in 0..most {
         let enough = match index < tries {

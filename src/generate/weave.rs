@@ -4,6 +4,7 @@
 //! The state is the ring: the open loops in working order. A batch works some or all of them once. What was decided in
 //! earlier rows is settled again within the window, so that gaps and missing heights are true when they are decided.
 
+use super::batch;
 use super::marker::Marker;
 use super::options::Options;
 use super::relax::{Brink, Effort, Ends, Mark, Relaxer};
@@ -25,8 +26,6 @@ const REACH: usize = 3;
 /// How far a stitch stretches or shrinks toward the level of its neighbors, per stitch height of difference, and at most.
 const LEVELING: f64 = 0.858;
 const LEVELING_MOST: f64 = 0.313;
-/// Missing height by which the ring's start must lag behind its most advanced place to move the seam there.
-const SEAM: f64 = 0.4;
 /// Added to missing heights before short rows are planned: it is better to be a little early.
 const EAGER: f64 = 0.328;
 /// Weight of square tiles while rows settle.
@@ -146,6 +145,7 @@ impl<'s> Weaver<'s> {
     pub(crate) fn run(&mut self, judge: Judge, mut progress: impl FnMut(u64, u64)) -> Outcome {
         self.opens = judge.opens;
         loop {
+            self.look_for_missing();
             let length = self.batch_length();
             self.part_batch = length < self.ring.len();
             self.marks.push(Mark::of(&self.sheet));
@@ -204,28 +204,19 @@ impl<'s> Weaver<'s> {
         (self.rows.at(self.sheet.v[i]) - self.sheet.u[i]) * row_speed(&self.sheet.jet(id)) / self.sheet.height
     }
 
-    /// How much of the ring the next batch takes. A short row must not cross the end of a batch, or a cusp grows there that
-    /// never gets one; so the end moves to where the fabric is most advanced.
+    /// Missing heights of the open loops.
+    fn look_for_missing(&mut self) {
+        let mut missing = std::mem::take(&mut self.missing);
+        missing.clear();
+        missing.extend(self.ring.iter().map(|id| self.missing_at(*id)));
+        self.missing = missing;
+    }
+
+    /// How much of the ring the next batch takes.
     fn batch_length(&self) -> usize {
         let n = self.ring.len();
-        if !self.options.short_rows || self.options.paper {
-            return n;
-        }
-        if self.part_batch || n < 6 || self.marks.is_empty() {
-            return n;
-        }
-        let mut missing: Vec<f64> = self.ring.iter().map(|id| self.missing_at(*id)).collect();
-        // The ring goes on around its ends.
-        missing.rotate_right(2);
-        missing.extend_from_within(..4);
-        let smooth = |i: usize| missing[i..i + 5].iter().sum::<f64>() / 5.0;
-        let mut least = 0;
-        for i in 1..n {
-            if smooth(i) < smooth(least) - 1e-9 {
-                least = i;
-            }
-        }
-        if smooth(0) - smooth(least) > SEAM && least > 2 && least + 2 < n { least } else { n }
+        let whole = !self.options.short_rows || self.options.paper;
+        if whole || self.part_batch || self.marks.is_empty() { n } else { batch::length(&self.missing) }
     }
 
     /// Feet of the stitches over the bases: an offset of the front, leveled a little. Returns how many bases still lie below
@@ -237,10 +228,8 @@ impl<'s> Weaver<'s> {
             self.feet = super::paper::feet(self.surface, self.rows, self.sheet.height, places);
             return self.feet.len();
         }
-        let mut missing = std::mem::take(&mut self.missing);
-        missing.clear();
-        missing.extend(bases.iter().map(|id| self.missing_at(*id)));
-        self.missing = missing;
+        // Those of the bases: what else there is goes beyond.
+        self.missing.truncate(n);
         self.feet.clear();
         let reach = reach(n + self.ring.len());
         let mut neighbors = 0.0;
@@ -375,13 +364,17 @@ impl<'s> Weaver<'s> {
         self.relaxer.relax(self.surface, &mut self.sheet, mark, exact, effort, ends);
     }
 
+    /// Settles the whole; points are left to first order.
     fn settle_all(&mut self, sweeps: u32, level: bool) {
+        if sweeps == 0 {
+            return;
+        }
         let mark = self.free(Mark::default());
         let effort = Effort { sweeps, squareness: self.options.squareness };
         let top = if level { top::first(&self.ring) } else { usize::MAX };
         let level = Some(Brink { rows: self.rows, top, firm: false });
         let ends = Ends { level, ..self.ends() };
-        self.relaxer.relax(self.surface, &mut self.sheet, mark, 0, effort, ends);
+        self.relaxer.relax(self.surface, &mut self.sheet, mark, usize::MAX, effort, ends);
     }
 
     /// Settles the last rows once more where they end ragged.

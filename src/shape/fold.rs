@@ -85,8 +85,9 @@ fn crossing(chain: &Chain, frames: &Frames, stack: &Stack) -> Result<(), Fault> 
         let (segment, t) = chain.locate(w);
         let place = chain.place(segment, t);
         let axis = frames.axis(segment, t, &place);
+        let line = stack.at(w);
         let ring: [DVec3; 8] =
-            std::array::from_fn(|k| carry::<false>(&place, axis, &stack.eval(w, k as f64 / 8.0)).point);
+            std::array::from_fn(|k| carry::<false>(&place, axis, &line.eval(k as f64 / 8.0)).point);
         let center = ring.iter().sum::<DVec3>() / 8.0;
         let radius = ring.iter().map(|p| p.distance(center)).fold(f64::INFINITY, f64::min);
         Slice { w, center, tangent: place.tangent, radius }

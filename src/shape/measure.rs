@@ -1,14 +1,14 @@
 //! Lengths and areas of surfaces by quadrature.
 
-use super::ParametricSurface;
 use super::bezier::integrate;
+use super::{Jet, ParametricSurface};
 use std::ops::Range;
 
 /// Length of the closed line at `u`, in mm, from `samples` derivatives: exact to rounding for smooth lines and few samples.
 pub fn girth<S: ParametricSurface + ?Sized>(surface: &S, u: f64, samples: u32) -> f64 {
-    let samples = samples.max(1);
-    let speed = |k: u32| surface.jet(u, f64::from(k) / f64::from(samples)).dv.length();
-    (0..samples).map(speed).sum::<f64>() / f64::from(samples)
+    let mut jets = vec![Jet::default(); samples.max(1) as usize];
+    surface.ring(u, 0.0, &mut jets);
+    jets.iter().map(|jet| jet.dv.length()).sum::<f64>() / jets.len() as f64
 }
 
 /// Length of the line at `v` over a range of u, in mm, by 5-point quadrature on `steps` equal parts.
@@ -25,16 +25,14 @@ pub fn length_along<S: ParametricSurface + ?Sized>(
 
 /// Area over u in [0, 1], in mm^2, by 5-point quadrature on `steps` parts of u and `samples` of v.
 pub fn area<S: ParametricSurface + ?Sized>(surface: &S, steps: u32, samples: u32) -> f64 {
-    let (steps, samples) = (steps.max(1), samples.max(1));
-    let ring = |u: f64| {
-        let element = |k: u32| {
-            let jet = surface.jet(u, f64::from(k) / f64::from(samples));
-            jet.du.cross(jet.dv).length()
-        };
-        (0..samples).map(element).sum::<f64>() / f64::from(samples)
+    let steps = steps.max(1);
+    let mut jets = vec![Jet::default(); samples.max(1) as usize];
+    let mut ring = |u: f64| {
+        surface.ring(u, 0.0, &mut jets);
+        jets.iter().map(|jet| jet.du.cross(jet.dv).length()).sum::<f64>() / jets.len() as f64
     };
     let at = |k: u32| f64::from(k) / f64::from(steps);
-    (0..steps).map(|k| integrate(at(k), at(k + 1), ring)).sum()
+    (0..steps).map(|k| integrate(at(k), at(k + 1), &mut ring)).sum()
 }
 
 /// Whether the surface looks the same all around: the metric does not depend on v (to 1e-7 of itself, at 16 x 16
@@ -42,15 +40,12 @@ pub fn area<S: ParametricSurface + ?Sized>(surface: &S, steps: u32, samples: u32
 pub fn is_revolution<S: ParametricSurface + ?Sized>(surface: &S) -> bool {
     const SAMPLES: u32 = 16;
     const TOLERANCE: f64 = 1e-7;
+    let mut ring = [Jet::default(); SAMPLES as usize];
     (0..SAMPLES).all(|i| {
-        let u = (f64::from(i) + 0.5) / f64::from(SAMPLES);
-        let metric = |k: u32| {
-            let jet = surface.jet(u, f64::from(k) / f64::from(SAMPLES));
-            (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared())
-        };
-        let (e0, _, g0) = metric(0);
-        (0..SAMPLES).all(|k| {
-            let (e, f, g) = metric(k);
+        surface.ring((f64::from(i) + 0.5) / f64::from(SAMPLES), 0.0, &mut ring);
+        let metric = |jet: &Jet| (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
+        let (e0, _, g0) = metric(&ring[0]);
+        ring.iter().map(metric).all(|(e, f, g)| {
             (e - e0).abs() <= TOLERANCE * e0
                 && (g - g0).abs() <= TOLERANCE * g0
                 && f.abs() <= TOLERANCE * (e * g).sqrt()

@@ -67,6 +67,15 @@ pub trait ParametricSurface: fmt::Debug + Send + Sync {
             dv: slope(self.point(u, v - STEP), self.point(u, v + STEP)),
         }
     }
+
+    /// Positions and derivatives around a whole turn, at equal distances of v from `from` on. A surface that shares work
+    /// between them does better than the default, which takes one after the other.
+    fn ring(&self, u: f64, from: f64, jets: &mut [Jet]) {
+        let count = jets.len() as f64;
+        for (k, jet) in jets.iter_mut().enumerate() {
+            *jet = self.jet(u, from + k as f64 / count);
+        }
+    }
 }
 
 /// How an end of a tube is treated.

@@ -181,20 +181,62 @@ impl Stack {
     /// The profile in the local frame at curve parameter `w`, with its derivatives by `w` and `v`.
     #[inline]
     pub(super) fn eval(&self, w: f64, v: f64) -> Jet {
+        self.at(w).eval(v)
+    }
+
+    /// The closed line at curve parameter `w`.
+    #[inline]
+    pub(super) fn at(&self, w: f64) -> Line<'_> {
         let (spans, squared) = match &self.kind {
             Kind::Ellipses { spans, squared } => (spans, *squared),
-            Kind::Loops(stack) => return stack.eval(w, v),
+            Kind::Loops(stack) => return Line::Loop { stack, w },
         };
         let span = span_at(spans, w);
-        let (sin, cos) = sin_cos_turns(-v);
-        let (a, along) = span.number(0, w, squared);
-        let (b, across) = span.number(1, w, squared);
-        let (x, dx) = span.number(2, w, false);
-        let (y, dy) = span.number(3, w, false);
-        Jet {
-            point: DVec3::new(x + a * cos, y + b * sin, 0.0),
-            du: DVec3::new(dx + along * cos, dy + across * sin, 0.0),
-            dv: DVec3::new(TAU * a * sin, -TAU * b * cos, 0.0),
+        Line::Ellipse([
+            span.number(0, w, squared),
+            span.number(1, w, squared),
+            span.number(2, w, false),
+            span.number(3, w, false),
+        ])
+    }
+}
+
+/// One closed line of a stack.
+pub(super) enum Line<'s> {
+    /// Two radii and two offsets with their slopes.
+    Ellipse([(f64, f64); 4]),
+    Loop {
+        stack: &'s LoopStack,
+        w: f64,
+    },
+}
+
+impl Line<'_> {
+    /// As [`Stack::eval`].
+    #[inline]
+    pub(super) fn eval(&self, v: f64) -> Jet {
+        match self {
+            Self::Ellipse([(a, along), (b, across), (x, dx), (y, dy)]) => {
+                let (sin, cos) = sin_cos_turns(-v);
+                Jet {
+                    point: DVec3::new(x + a * cos, y + b * sin, 0.0),
+                    du: DVec3::new(dx + along * cos, dy + across * sin, 0.0),
+                    dv: DVec3::new(TAU * a * sin, -TAU * b * cos, 0.0),
+                }
+            }
+            Self::Loop { stack, w } => stack.eval(*w, v),
+        }
+    }
+
+    /// The point alone.
+    #[inline]
+    pub(super) fn point(&self, v: f64) -> DVec3 {
+        match self {
+            Self::Ellipse([(a, _), (b, _), (x, _), (y, _)]) => {
+                let (sin, cos) = sin_cos_turns(-v);
+                DVec3::new(x + a * cos, y + b * sin, 0.0)
+            }
+            Self::Loop { stack, w } => stack.eval(*w, v).point,
         }
     }
 }

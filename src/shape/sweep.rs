@@ -9,7 +9,7 @@ use super::{End, Jet, ParametricSurface, fold};
 use crate::math;
 use glam::DVec3;
 use std::fmt;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 /// Segments a curve may have.
 const MOST_SEGMENTS: usize = 2048;
@@ -197,10 +197,11 @@ impl Sweep {
 
     /// Center and mean radius of the section at curve parameter `w`; the radius is 0 unless `wanted`.
     fn disk(&self, w: f64, wanted: bool) -> (DVec3, f64) {
-        const SAMPLES: u32 = 64;
-        let ring = (0..SAMPLES).map(|k| self.body(w, f64::from(k) / f64::from(SAMPLES)).point);
-        let center = ring.clone().sum::<DVec3>() / f64::from(SAMPLES);
-        let radius = ring.map(|p| p.distance(center)).sum::<f64>() / f64::from(SAMPLES);
+        const SAMPLES: usize = 64;
+        let mut ring = [Jet::default(); SAMPLES];
+        self.body_ring(w, 0.0, &mut ring);
+        let center = ring.iter().map(|jet| jet.point).sum::<DVec3>() / SAMPLES as f64;
+        let radius = ring.iter().map(|jet| jet.point.distance(center)).sum::<f64>() / SAMPLES as f64;
         (center, if wanted { radius } else { 0.0 })
     }
 
@@ -231,6 +232,31 @@ impl Sweep {
         } else {
             carry::<false>(&place, axis, &profile)
         }
+    }
+
+    /// The same around a whole turn.
+    fn body_ring(&self, w: f64, from: f64, jets: &mut [Jet]) {
+        let (segment, t) = self.chain.locate(w);
+        let place = self.chain.place(segment, t);
+        let axis = self.frames.axis(segment, t, &place);
+        let line = self.stack.at(w);
+        let count = jets.len() as f64;
+        for (k, jet) in jets.iter_mut().enumerate() {
+            let profile = line.eval(from + k as f64 / count);
+            *jet = if self.stack.planar() {
+                carry::<true>(&place, axis, &profile)
+            } else {
+                carry::<false>(&place, axis, &profile)
+            };
+        }
+    }
+
+    /// The part of u on which the curve alone makes the surface.
+    #[inline]
+    fn curved(&self) -> RangeInclusive<f64> {
+        let low = if self.start.closed { self.start.width } else { 0.0 };
+        let high = if self.end.closed { 1.0 - self.end.width } else { 1.0 };
+        low..=high
     }
 
     /// The surface on the curve's part of u.
@@ -311,13 +337,35 @@ fn breaks(chain: &Chain, stack: &Stack) -> Vec<f64> {
 impl ParametricSurface for Sweep {
     #[inline]
     fn point(&self, u: f64, v: f64) -> DVec3 {
-        self.jet(u, v).point
+        if !self.curved().contains(&u) {
+            return self.beyond(u, v).point;
+        }
+        let (w, _) = self.meridian.eval(u);
+        let (segment, t) = self.chain.locate(w);
+        let place = self.chain.place(segment, t);
+        let axis = self.frames.axis(segment, t, &place);
+        let point = self.stack.at(w).point(v);
+        let across = axis * point.x + place.tangent.cross(axis) * point.y;
+        place.point + if self.stack.planar() { across } else { across + place.tangent * point.z }
     }
 
     #[inline]
     fn jet(&self, u: f64, v: f64) -> Jet {
-        let low = if self.start.closed { self.start.width } else { 0.0 };
-        let high = if self.end.closed { 1.0 - self.end.width } else { 1.0 };
-        if u >= low && u <= high { self.tube(u, v) } else { self.beyond(u, v) }
+        if self.curved().contains(&u) { self.tube(u, v) } else { self.beyond(u, v) }
+    }
+
+    fn ring(&self, u: f64, from: f64, jets: &mut [Jet]) {
+        if self.curved().contains(&u) {
+            let (w, rate) = self.meridian.eval(u);
+            self.body_ring(w, from, jets);
+            for jet in jets {
+                jet.du *= rate;
+            }
+        } else {
+            let count = jets.len() as f64;
+            for (k, jet) in jets.iter_mut().enumerate() {
+                *jet = self.beyond(u, from + k as f64 / count);
+            }
+        }
     }
 }

@@ -102,7 +102,7 @@ impl Relaxer {
                 if !ends.pulls_level(sheet, i) {
                     continue;
                 }
-                if (rows.tau(sheet.u[i]) - sheet.v[i]).abs() > pull.far {
+                if (rows.tau(sheet.u[i], sheet.v[i]) - sheet.v[i]).abs() > pull.far {
                     continue;
                 }
                 let (du, dv) = (sheet.du[i], sheet.dv[i]);

@@ -186,7 +186,10 @@ impl Relaxer {
         ends: Ends<'_>,
     ) {
         let first = from.nodes;
-        if first >= sheet.len() {
+        if effort.sweeps == 0 || first >= sheet.len() {
+            for i in first.max(exact)..sheet.len() {
+                look(surface, sheet, i);
+            }
             return;
         }
         let (edges, quads) = (&sheet.edges[from.edges..], &sheet.quads[from.quads..]);
