@@ -83,6 +83,29 @@ pub fn sin_cos_turns(turns: f64) -> (f64, f64) {
     }
 }
 
+/// The whole part of a number and what is left; of one below zero, or none at all, zero and all of it. Numbers are below 2^31.
+#[inline]
+pub(crate) fn split(x: f64) -> (usize, f64) {
+    // Through 32 bits, for which every machine has an instruction either way.
+    let whole = (x as i32).max(0);
+    (whole as usize, x - f64::from(whole))
+}
+
+/// The nearest whole number, of two the even one; for numbers below 2^51.
+#[inline]
+pub(crate) fn nearest(x: f64) -> f64 {
+    // Adding and subtracting 1.5 * 2^52 rounds.
+    const ROUND: f64 = 6_755_399_441_055_744.0;
+    x + ROUND - ROUND
+}
+
+/// What is left of a number above the whole one below it: from 0 to 1, which a hair below a whole number rounds up to.
+#[inline]
+pub(crate) fn fraction(x: f64) -> f64 {
+    let rest = x - nearest(x);
+    if rest < 0.0 { rest + 1.0 } else { rest }
+}
+
 /// The stretch of a ring of numbers with the greatest sum: its first index, and how many there are; none where no number
 /// is positive.
 pub(crate) fn stretch(values: &[f64]) -> (usize, usize) {
@@ -126,6 +149,20 @@ mod tests {
         let quarters = [0.0, 0.25, 0.5, 0.75, 1.0, -0.25].map(sin_cos_turns);
         assert_eq!(quarters, [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)]);
         assert!(sin_cos_turns(f64::NAN).0.is_nan());
+    }
+
+    #[test]
+    fn numbers_are_taken_apart() {
+        for k in -4000..4000 {
+            let x = f64::from(k) * 0.37;
+            assert!((fraction(x) - (x - x.floor())).abs() < 1e-12, "{x}");
+            assert!((nearest(x) - x).abs() <= 0.5);
+            let (whole, rest) = split(x);
+            assert_eq!(whole, x.floor().max(0.0) as usize);
+            assert_eq!(whole as f64 + rest, x);
+        }
+        assert_eq!(split(f64::NAN).0, 0);
+        assert_eq!([fraction(-1e-20), fraction(3.0), fraction(-3.0)], [1.0, 0.0, 0.0]);
     }
 
     #[test]

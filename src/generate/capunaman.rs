@@ -38,7 +38,7 @@ impl Baseline {
     /// stitches of our own algorithm do in the end. The wales stay.
     pub fn settle(&mut self, tube: &Tube, gauge: &Gauge, options: &Options) {
         let surface = &*tube.surface;
-        let mut sheet = Sheet::new(gauge);
+        let mut sheet = Sheet::new(gauge, self.nodes.len());
         for (id, node) in self.nodes.iter().enumerate() {
             let jet = surface.jet(node.u, node.v);
             let foot = Foot {

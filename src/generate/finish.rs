@@ -4,6 +4,7 @@ use super::rows::Rows;
 use super::sheet::{Sheet, ShortRow, Work};
 use crate::ir::graph::Corners;
 use crate::ir::{Direction, Graph, Node, NodeId, Tile};
+use crate::math;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -34,15 +35,16 @@ pub(crate) fn graph(sheet: &Sheet, rows: &Rows, start: usize, poles: [Option<DVe
         }
     }
     let mut nodes = vec![Node { position: DVec3::ZERO, u: 0.0, tau: 0.0, v: 0.0 }; sheet.len()];
+    let mut knot = 0;
     for (old, &new) in order.new_id.iter().enumerate() {
         if let Some(node) = nodes.get_mut(new as usize) {
-            let v = (sheet.v[old] + turn).rem_euclid(1.0);
+            let v = math::fraction(sheet.v[old] + turn);
             // A hair below zero rounds up to a whole turn.
             let v = if v < 1.0 { v } else { 0.0 };
             *node = Node {
                 position: sheet.point[old],
                 u: sheet.u[old],
-                tau: rows.tau(sheet.u[old], sheet.v[old]),
+                tau: rows.tau(sheet.u[old], &mut knot),
                 v,
             };
         }

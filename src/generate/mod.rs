@@ -19,6 +19,7 @@ mod score;
 mod seam;
 mod sheet;
 mod short_rows;
+mod stacked;
 mod staircase;
 mod symmetric;
 mod top;
@@ -125,8 +126,13 @@ fn lay_on(
     // A branch in a slit begins at an end of it, with as many loops below as above.
     let slit = matches!(tube.attachment, Some(Attachment { joint: Joint::Opening, .. }));
     let even = options.symmetric && loops.is_none() && !slit && is_revolution(exact);
-    let patches =
-        if even || options.paper { None } else { Patches::new(exact, [tube.start, tube.end], gauge) };
+    let quick = options.preset == Preset::Fast;
+    let stitches = if quick { patches::LARGE } else { patches::USUAL };
+    let patches = if even || options.paper {
+        None
+    } else {
+        Patches::new(exact, [tube.start, tube.end], gauge, stitches)
+    };
     let picked_up = loops.map(|loops| first_row::picked_up(exact, loops));
     let target: &dyn ParametricSurface = match &patches {
         Some(patches) => patches,
@@ -143,7 +149,7 @@ fn lay_on(
     let first = picked_up.as_ref().map(|(_, feet)| feet.as_slice());
     let surface: &dyn ParametricSurface = &turned;
     let ends = [tube.start, tube.end];
-    let expected = area(surface, 10, 16) / (gauge.width * gauge.height);
+    let expected = area(surface, 4, 16) / (gauge.width * gauge.height);
     if !expected.is_finite() {
         return fail(
             sink,
@@ -168,7 +174,11 @@ fn lay_on(
     };
     sink.stage("stitches");
     let most = (3.0 * expected) as usize + 10_000;
-    let laid = if even { Ground::new(surface, ends, &rows, gauge, options).lay_evenly(sink) } else { None };
+    let laid = if even {
+        Ground::new(surface, ends, &rows, gauge, &options.hurried()).lay_evenly(sink)
+    } else {
+        None
+    };
     let laid = laid.map(|(sheet, start)| Laid { sheet, start, spread: 0.0, turn: turned.by, lifted: None });
     let Some(Laid { sheet, start, turn, lifted, .. }) = laid.or_else(|| {
         tries::best(options, expected, first.is_some(), |options, turn, judge| {
@@ -176,15 +186,26 @@ fn lay_on(
             let lifted = first.and_then(|_| Rows::new(surface, [leads[0] + LIFT * turn, leads[1]], gauge));
             let turned = Turned { surface: turned.surface, by: turned.by + if fixed { 0.0 } else { turn } };
             let rows = lifted.as_ref().unwrap_or(&rows);
-            let mut ground = Ground { slit, first, ..Ground::new(&turned, ends, rows, gauge, options) };
+            let mut ground = Ground {
+                slit,
+                first,
+                expected: expected as usize,
+                ..Ground::new(&turned, ends, rows, gauge, options)
+            };
             for foot in first.unwrap_or_default() {
                 ground.range[0] = ground.range[0].min(foot.u);
             }
             let (mut sheet, start, spread) = ground.weave(most, judge, sink)?;
-            sheet.put_on(exact, turned.by);
+            // In a hurry they stay on the patches.
+            if options.preset == Preset::Std {
+                sheet.put_on(exact, turned.by);
+            }
             Some(Laid { sheet, start, spread, turn: turned.by, lifted })
         })
     }) else {
+        if quick {
+            return lay_on(exact, tube, loops, gauge, &options.unhurried(), sink);
+        }
         let message =
             "the rows run away: this surface folds over itself, or changes faster than stitches follow";
         return fail(sink, Code::SurfaceBroken, message.into(), GENTLER);
@@ -235,6 +256,8 @@ struct Ground<'s> {
     slit: bool,
     /// The first row, where it is picked up.
     first: Option<&'s [Foot]>,
+    /// About how many stitches there will be.
+    expected: usize,
 }
 
 impl<'s> Ground<'s> {
@@ -254,7 +277,7 @@ impl<'s> Ground<'s> {
             limit(ends[0], OVERHANG[0], rows.at(0.0), 0.0),
             limit(ends[1], OVERHANG[1], rows.at(rows.count), 1.0),
         ];
-        Self { surface, rows, gauge, options, poles, range, slit: false, first: None }
+        Self { surface, rows, gauge, options, poles, range, slit: false, first: None, expected: 0 }
     }
 
     /// Even repeats on a surface of revolution, settled; with the stitches of the first row. `None` elsewhere.
@@ -266,7 +289,7 @@ impl<'s> Ground<'s> {
         let ring = self.poles[0].map(|_| first_row::ring_size(surface, rows, self.gauge));
         let counts = symmetric::plan_counts(&girths, ring, options.ease())?;
         let start = counts[0] as usize;
-        let mut sheet = Sheet::new(self.gauge);
+        let mut sheet = Sheet::new(self.gauge, counts.iter().map(|count| *count as usize).sum());
         first_row::lay(surface, &mut sheet, first_row::centered_places(counts[0]), rows);
         symmetric::lay_rounds(surface, &mut sheet, rows, &counts, |done| {
             sink.step(u64::from(done), u64::from(rounds));
@@ -293,7 +316,7 @@ impl<'s> Ground<'s> {
     /// of the last turn. `None` when the rows run away.
     fn weave(&self, most: usize, judge: Judge, sink: &Sink<'_>) -> Option<(Sheet, usize, f64)> {
         let Self { surface, rows, options, .. } = *self;
-        let mut sheet = Sheet::new(self.gauge);
+        let mut sheet = Sheet::new(self.gauge, self.expected);
         if let Some(first) = self.first {
             first_row::lay_picked_up(&mut sheet, first);
         } else if self.poles[0].is_some() {

@@ -12,7 +12,7 @@ pub enum Preset {
     /// The options as they stand.
     #[default]
     Std,
-    /// For live editing: one try and fewer sweeps.
+    /// For live editing: one try with fewer sweeps and looks at the surface.
     Fast,
 }
 
@@ -21,7 +21,7 @@ pub enum Preset {
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct Options {
-    /// `fast` caps tries, window and sweeps.
+    /// `fast` makes one hurried try, and others only where that has tiles inside out.
     pub preset: Preset,
     /// Short rows on or off. Without them a bent tube keeps one count of rows on both sides and its tiles shear.
     pub short_rows: bool,
@@ -109,23 +109,34 @@ impl Options {
         Maker { hand: self.hand.unwrap_or_default(), lean: self.lean.unwrap_or(0.0) }
     }
 
-    /// The options with those of the preset taken in.
+    /// The options with what follows from others.
     pub(super) fn resolved(&self) -> Self {
         if self.paper {
             return super::paper::options(self);
         }
+        if self.sweeps == 0 && self.window_sweeps == 0 {
+            // There is nothing that another try could settle better.
+            return Self { tries: 1, ..self.clone() };
+        }
+        self.clone()
+    }
+
+    /// While someone waits: the options of the first try.
+    pub(super) fn hurried(&self) -> Self {
         match self.preset {
-            // Without sweeps there is nothing that another try could settle better.
-            Preset::Std if self.sweeps == 0 && self.window_sweeps == 0 => Self { tries: 1, ..self.clone() },
             Preset::Std => self.clone(),
             Preset::Fast => Self {
                 window: self.window.min(2),
-                window_sweeps: self.window_sweeps.min(2),
-                sweeps: self.sweeps.min(6),
-                tries: 1,
+                window_sweeps: self.window_sweeps.min(1),
+                sweeps: self.sweeps.min(5),
                 ..self.clone()
             },
         }
+    }
+
+    /// Without hurry.
+    pub(super) fn unhurried(&self) -> Self {
+        Self { preset: Preset::Std, ..self.clone() }
     }
 
     /// The first option out of range: its name and what would be right.

@@ -5,16 +5,20 @@
 //! itself.
 
 use crate::ir::Gauge;
+use crate::math;
 use crate::shape::{End, Jet, ParametricSurface};
 use glam::{DVec3, Vec3A};
 
 /// Rows of patches at a closed end that are looked up on the surface itself, for it may have any power of u at a pole.
 const MARGIN: usize = 1;
-/// Stitches that a patch is long and wide.
-const STITCHES: f64 = 2.0;
+/// Stitches that a patch is long and wide, and the same while someone waits.
+pub(super) const USUAL: f64 = 2.0;
+pub(super) const LARGE: f64 = 3.0;
 /// Fewest patches along and around, and most of all.
 const LEAST: [usize; 2] = [8, 16];
 const MOST: f64 = 30_000.0;
+/// Of a ring of places that are so many times fewer than the patches around, each is looked up by itself.
+const FEW: usize = 2;
 /// Looks at the surface along and around that tell its size.
 const LOOKS: usize = 10;
 
@@ -36,20 +40,27 @@ type Cubic = [Vec3A; 4];
 pub(super) struct Patches<'s> {
     surface: &'s dyn ParametricSurface,
     origin: DVec3,
-    /// Patches along and around.
-    along: usize,
+    /// Patches along and around, also as numbers.
     around: usize,
+    numbers: [f64; 2],
     /// Where along they begin and end.
     first: usize,
-    last: usize,
+    range: [f64; 2],
     /// By rows around.
     each: Vec<Patch>,
 }
 
 impl<'s> Patches<'s> {
     /// Patches of a few stitches; `None` where these are too many, or the surface has no sound derivatives.
-    pub(super) fn new(surface: &'s dyn ParametricSurface, ends: [End; 2], gauge: &Gauge) -> Option<Self> {
-        let [along, around] = Self::size(surface, gauge)?;
+    ///
+    /// A patch has about so many `stitches` along and around.
+    pub(super) fn new(
+        surface: &'s dyn ParametricSurface,
+        ends: [End; 2],
+        gauge: &Gauge,
+        stitches: f64,
+    ) -> Option<Self> {
+        let [along, around] = Self::size(surface, [stitches * gauge.height, stitches * gauge.width])?;
         let [first, margin] = ends.map(|end| if end == End::Closed { MARGIN } else { 0 });
         let last = along - margin;
         let origin = surface.point(0.5, 0.0);
@@ -67,11 +78,12 @@ impl<'s> Patches<'s> {
             let next = below.iter().zip(&corners).cycle().skip(1);
             each.extend(sides.zip(next).map(|((a, c), (b, d))| patch([a, b, c, d])));
         }
-        Some(Self { surface, origin, along, around, first, last, each })
+        let (numbers, range) = ([along as f64, around as f64], [first as f64, last as f64]);
+        Some(Self { surface, origin, around, numbers, first, range, each })
     }
 
     /// Patches along and around, for their size where rows are densest.
-    fn size(surface: &dyn ParametricSurface, gauge: &Gauge) -> Option<[usize; 2]> {
+    fn size(surface: &dyn ParametricSurface, [height, width]: [f64; 2]) -> Option<[usize; 2]> {
         let (mut longest, mut widest) = (0.0_f64, 0.0_f64);
         let mut ring = [Jet::default(); LOOKS];
         for i in 0..LOOKS {
@@ -84,7 +96,7 @@ impl<'s> Patches<'s> {
             longest = longest.max(speed);
             widest = widest.max(girth);
         }
-        let (along, around) = (longest / (STITCHES * gauge.height), widest / (STITCHES * gauge.width));
+        let (along, around) = (longest / height, widest / width);
         let fits = along.max(LEAST[0] as f64) * around.max(LEAST[1] as f64) <= MOST;
         fits.then(|| {
             let count = |stitches: f64, least| (stitches.ceil() as usize).max(least);
@@ -155,29 +167,28 @@ impl Patches<'_> {
     /// The row of patches at u, and the share along it.
     #[inline]
     fn row(&self, u: f64) -> Option<(usize, f32)> {
-        let x = u * self.along as f64;
+        let x = u * self.numbers[0];
         // No number is in no range.
-        (x >= self.first as f64 && x < self.last as f64).then(|| {
-            let i = x as usize;
-            (i - self.first, (x - i as f64) as f32)
+        (x >= self.range[0] && x < self.range[1]).then(|| {
+            let (i, share) = math::split(x);
+            (i - self.first, share as f32)
         })
     }
 
     /// The patch around, and the share of it.
     #[inline]
     fn column(&self, v: f64) -> (usize, f32) {
-        let whole = v as i64 as f64;
-        let y = (v - if whole > v { whole - 1.0 } else { whole }) * self.around as f64;
-        let j = (y as usize).min(self.around - 1);
-        (j, (y - j as f64) as f32)
+        let (j, share) = math::split(math::fraction(v) * self.numbers[1]);
+        // A hair below a whole turn may be one.
+        if j < self.around { (j, share as f32) } else { (self.around - 1, 1.0) }
     }
 
     #[inline]
     fn jet_of(&self, point: Vec3A, du: Vec3A, dv: Vec3A) -> Jet {
         Jet {
             point: self.origin + point.as_dvec3(),
-            du: du.as_dvec3() * self.along as f64,
-            dv: dv.as_dvec3() * self.around as f64,
+            du: du.as_dvec3() * self.numbers[0],
+            dv: dv.as_dvec3() * self.numbers[1],
         }
     }
 }
@@ -205,6 +216,13 @@ impl ParametricSurface for Patches<'_> {
             Some((row, s))
         });
         let Some((row, s)) = row else { return self.surface.ring(u, from, jets) };
+        let share = 1.0 / jets.len() as f64;
+        if FEW * jets.len() < self.around {
+            for (k, jet) in (0_u32..).zip(jets) {
+                *jet = self.jet(u, from + f64::from(k) * share);
+            }
+            return;
+        }
         let s_rates = rates(s);
         // At this place along each of them, what is left are cubics around.
         let columns: Vec<(Cubic, Cubic)> = row
@@ -214,9 +232,8 @@ impl ParametricSurface for Patches<'_> {
                 (along.each_ref().map(|along| value(along, s)), along.map(|along| slope(&along, s_rates)))
             })
             .collect();
-        let count = jets.len() as f64;
-        for (k, jet) in jets.iter_mut().enumerate() {
-            let (j, t) = self.column(from + k as f64 / count);
+        for (k, jet) in (0_u32..).zip(jets) {
+            let (j, t) = self.column(from + f64::from(k) * share);
             let (values, slopes) = &columns[j];
             *jet = self.jet_of(value(values, t), value(slopes, t), slope(values, rates(t)));
         }
@@ -232,7 +249,7 @@ mod tests {
     fn patches_differ_from_the_surface_by_next_to_nothing() {
         let surface = TorusArc { major: 30.0, minor: 12.0, angle: 2.0 };
         let gauge = Gauge::new(3.0, 3.0);
-        let patches = Patches::new(&surface, [End::Open; 2], &gauge).unwrap();
+        let patches = Patches::new(&surface, [End::Open; 2], &gauge, USUAL).unwrap();
         for i in 0..1000 {
             let (u, v) = (f64::from(i) / 999.0, 0.618 * f64::from(i) - 100.0);
             let (near, exact) = (patches.jet(u, v), surface.jet(u, v));

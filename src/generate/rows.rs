@@ -1,6 +1,7 @@
 //! The row table: where along the tube each row lies, so that the least distance of two rows is one stitch height.
 
 use crate::ir::Gauge;
+use crate::math;
 use crate::shape::{End, Jet, ParametricSurface, girth};
 
 /// Share of the mean row distance in the spacing rule; the rest is the least distance around the row.
@@ -67,16 +68,20 @@ impl Rows {
     #[inline]
     pub(crate) fn at(&self, tau: f64) -> f64 {
         let x = ((tau + self.lead) * self.scale).max(0.0);
-        let i = (x as usize).min(self.knots.len() - 2);
-        self.knots[i] + (x - i as f64) * (self.knots[i + 1] - self.knots[i])
+        let last = self.knots.len() - 2;
+        let (i, rest) = math::split(x);
+        let (i, rest) = if i <= last { (i, rest) } else { (last, x - last as f64) };
+        let [low, high] = [self.knots[i], self.knots[i + 1]];
+        low + rest * (high - low)
     }
 
-    /// The row number of a surface parameter: the inverse of [`Rows::at`]. It is looked for from row `near` on.
-    pub(crate) fn tau(&self, u: f64, near: f64) -> f64 {
+    /// The row number of a surface parameter: the inverse of [`Rows::at`]. `knot` is where the last one was found, from
+    /// which it is looked for.
+    pub(crate) fn tau(&self, u: f64, knot: &mut usize) -> f64 {
         const FAR: usize = 8;
         let last = self.knots.len() - 2;
-        let mut i = (((near + self.lead) * self.scale) as usize).min(last);
-        let first = i;
+        let first = (*knot).min(last);
+        let mut i = first;
         while i < last && self.knots[i + 1] <= u && i < first + FAR {
             i += 1;
         }
@@ -86,6 +91,7 @@ impl Rows {
         if i.abs_diff(first) == FAR {
             i = self.knots.partition_point(|knot| *knot <= u).clamp(1, last + 1) - 1;
         }
+        *knot = i;
         let x = i as f64 + (u - self.knots[i]) / (self.knots[i + 1] - self.knots[i]);
         x / self.scale - self.lead
     }

@@ -2,6 +2,7 @@
 
 use super::sheet::{EdgeKind, Quad, Shaped, Sheet, ShortRow, TileKind, Work};
 use crate::ir::Stitch;
+use glam::DVec3;
 
 /// Mean length error, its root mean square, and skew that weigh the same.
 const USUAL_LENGTH: f64 = 0.04;
@@ -21,6 +22,9 @@ const STACKED: f64 = 0.5;
 /// Price of an inverted tile as a share of all tiles, and of one at all.
 const INVERTED: f64 = 40.0;
 const ANY_INVERTED: f64 = 2.0;
+
+/// A tile with less than this share of its area is flat.
+const FLAT: f64 = 0.05;
 
 /// What a try came to: lower is better.
 #[derive(Clone, Copy, Debug, Default)]
@@ -90,15 +94,31 @@ impl Score {
     }
 }
 
+/// A tile lies with its inside out, or is so flat that it may on a surface that is known better.
+pub(super) fn any_inverted(sheet: &Sheet) -> bool {
+    let flat = FLAT * 2.0 * sheet.width * sheet.height;
+    sheet.quads.iter().any(|quad| {
+        twice_area(sheet, quad)
+            .is_some_and(|(area, normal)| area <= 0.0 || area * area <= flat * flat * normal.length_squared())
+    })
+}
+
 /// The tile lies with its inside out; turns and those of three corners count as fine.
 fn is_inverted(sheet: &Sheet, quad: &Quad) -> bool {
+    twice_area(sheet, quad).is_some_and(|(area, _)| area <= 0.0)
+}
+
+/// Twice the area of a tile as seen from outside, times the length of the normal that comes with it; `None` for turns and tiles
+/// of three corners.
+fn twice_area(sheet: &Sheet, quad: &Quad) -> Option<(f64, DVec3)> {
     let [b0, b1, t0, t1] = quad.corners;
     if !matches!(quad.kind, TileKind::Wales | TileKind::Step) || b0 == b1 || t0 == t1 {
-        return false;
+        return None;
     }
     let [left, right, top_left, top_right] = quad.corners.map(|id| sheet.point[id as usize]);
     let jet = sheet.jet(b0);
-    jet.dv.cross(jet.du).dot((right - top_left).cross(top_right - left)) <= 0.0
+    let normal = jet.dv.cross(jet.du);
+    Some((normal.dot((right - top_left).cross(top_right - left)), normal))
 }
 
 /// The increases of the long rows that stand beside one of the row below although there are bases that are clear, as a

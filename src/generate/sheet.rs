@@ -70,6 +70,9 @@ pub(crate) enum Shaped {
     Dec,
 }
 
+/// The part along the surface of a unit vector that is as good as across it.
+const NO_WAY: f64 = 1e-6;
+
 /// Everything that grows while rows are added. Node arrays run in parallel.
 #[derive(Debug)]
 pub(crate) struct Sheet {
@@ -127,21 +130,24 @@ impl Foot {
 }
 
 impl Sheet {
-    pub(crate) fn new(gauge: &Gauge) -> Self {
+    /// With room for about so many stitches.
+    pub(crate) fn new(gauge: &Gauge, stitches: usize) -> Self {
+        // What the shape merely claims costs no more than this; beyond, arrays grow.
+        let nodes = stitches.min(1 << 18) / 8 * 9;
         Self {
             width: gauge.width,
             height: gauge.height,
-            u: Vec::new(),
-            v: Vec::new(),
-            point: Vec::new(),
-            du: Vec::new(),
-            dv: Vec::new(),
-            shaped: Vec::new(),
-            steps: Vec::new(),
-            arrival: Vec::new(),
-            edges: Vec::new(),
-            quads: Vec::new(),
-            main: Vec::new(),
+            u: Vec::with_capacity(nodes),
+            v: Vec::with_capacity(nodes),
+            point: Vec::with_capacity(nodes),
+            du: Vec::with_capacity(nodes),
+            dv: Vec::with_capacity(nodes),
+            shaped: Vec::with_capacity(nodes),
+            steps: Vec::with_capacity(nodes),
+            arrival: Vec::with_capacity(nodes),
+            edges: Vec::with_capacity(2 * nodes),
+            quads: Vec::with_capacity(nodes),
+            main: Vec::with_capacity(nodes),
             short_rows: Vec::new(),
         }
     }
@@ -226,15 +232,42 @@ impl Sheet {
         let i = from as usize;
         let (x, y) = pull_back(self.du[i], self.dv[i], direction * distance);
         let middle = surface.jet(self.u[i] + 0.5 * x, self.v[i] + 0.5 * y);
-        let normal = middle.du.cross(middle.dv).normalize_or_zero();
-        let heading = (direction - normal * direction.dot(normal)).normalize_or(direction);
-        let (x, y) = pull_back(middle.du, middle.dv, heading * distance);
+        // The part of the direction along the surface there, made as long again.
+        let (x, y) = pull_back(middle.du, middle.dv, direction);
+        let way = middle.du * x + middle.dv * y;
+        let length = way.length();
+        let scale = if length > NO_WAY { distance / length } else { distance };
         Foot {
-            u: self.u[i] + x,
-            v: self.v[i] + y,
-            point: self.point[i] + middle.du * x + middle.dv * y,
+            u: self.u[i] + x * scale,
+            v: self.v[i] + y * scale,
+            point: self.point[i] + way * scale,
             du: middle.du * 2.0 - self.du[i],
             dv: middle.dv * 2.0 - self.dv[i],
+            along,
+        }
+    }
+
+    /// The same with one look, at the end: its length is right, its heading that of the start.
+    pub(crate) fn step(
+        &self,
+        surface: &dyn ParametricSurface,
+        from: NodeId,
+        direction: DVec3,
+        distance: f64,
+        along: DVec3,
+    ) -> Foot {
+        let i = from as usize;
+        let (x, y) = pull_back(self.du[i], self.dv[i], direction * distance);
+        let end = surface.jet(self.u[i] + x, self.v[i] + y);
+        let way = ((self.du[i] + end.du) * x + (self.dv[i] + end.dv) * y) * 0.5;
+        let length = way.length();
+        let scale = if length > NO_WAY * distance { distance / length } else { 1.0 };
+        Foot {
+            u: self.u[i] + x * scale,
+            v: self.v[i] + y * scale,
+            point: end.point + (end.du * x + end.dv * y) * (scale - 1.0),
+            du: end.du,
+            dv: end.dv,
             along,
         }
     }
@@ -245,8 +278,8 @@ impl Sheet {
         let jet = self.jet(at);
         let normal = jet.du.cross(jet.dv).normalize_or_zero();
         let chord = self.point[right as usize] - self.point[left as usize];
-        let fallback = jet.dv.normalize_or_zero();
-        let along = (chord - normal * chord.dot(normal)).normalize_or(fallback);
+        let along = (chord - normal * chord.dot(normal)).try_normalize();
+        let along = along.unwrap_or_else(|| jet.dv.normalize_or_zero());
         let up = normal.cross(along);
         (along, if up.dot(jet.du) < 0.0 { -up } else { up })
     }

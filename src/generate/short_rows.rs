@@ -30,6 +30,16 @@ impl Rules {
         let break_even = activation - 0.5 * end_price / NOMINAL;
         Self { length: [least, greatest.max(least)], break_even, end_price }
     }
+
+    /// Some run may be worth its two ends.
+    pub(crate) fn may_pay(&self, missing: &[f64]) -> bool {
+        let (mut best, mut sum) = (0.0_f64, 0.0_f64);
+        for d in missing {
+            sum = (sum + (d - self.break_even)).max(0.0);
+            best = best.max(sum);
+        }
+        4.0 * best > 2.0 * self.end_price
+    }
 }
 
 /// Plans the runs of one row.
@@ -180,6 +190,7 @@ mod tests {
             let mut planner = Planner::default();
             planner.solve(&missing, &vec![0.0; n], &vec![true; n], &rules, &mut Vec::new());
             assert!((planner.best[n] - best[n]).abs() < 1e-6);
+            assert!(rules.may_pay(&missing) || best[n] > -1e-9);
         }
     }
 }

@@ -12,8 +12,9 @@ use crate::shape::ParametricSurface;
 
 /// Rows that settle with the top.
 pub(super) const ROWS: usize = 12;
-/// Highest minus lowest open loop from which on it is worth the while, in rows.
+/// Highest minus lowest open loop from which on it is worth the while, in rows; and the same while someone waits.
 const RAGGED: f64 = 0.77;
+const VERY_RAGGED: f64 = 1.2;
 /// What the whole may lose by that, as a score.
 const PRICE: f64 = 0.1;
 /// Sweeps at once, and how many times these.
@@ -30,6 +31,8 @@ pub(super) struct Top<'w> {
     pub mark: Mark,
     pub ends: Ends<'w>,
     pub squareness: f64,
+    /// Only what is very ragged is worth it.
+    pub quick: bool,
 }
 
 impl Top<'_> {
@@ -38,8 +41,9 @@ impl Top<'_> {
         let brink = Brink { rows: self.rows, top: first(self.ring), firm: true };
         let ends = Ends { level: Some(brink), ..self.ends };
         let effort = Effort { sweeps: SWEEPS, squareness: self.squareness };
+        let ragged = if self.quick { VERY_RAGGED } else { RAGGED };
         for _ in 0..TIMES {
-            if spread(sheet, self.rows, self.ring) <= RAGGED {
+            if spread(sheet, self.rows, self.ring) <= ragged {
                 return;
             }
             let before = Places::of(sheet, self.mark.nodes);
@@ -66,7 +70,8 @@ pub(super) fn first(ring: &[NodeId]) -> usize {
 
 /// Rows between the highest and the lowest open loop, each against its place on the helix.
 pub(super) fn spread(sheet: &Sheet, rows: &Rows, ring: &[NodeId]) -> f64 {
-    let off = ring.iter().map(|id| *id as usize).map(|i| sheet.v[i] - rows.tau(sheet.u[i], sheet.v[i]));
+    let mut knot = rows.count as usize;
+    let off = ring.iter().map(|id| *id as usize).map(|i| sheet.v[i] - rows.tau(sheet.u[i], &mut knot));
     let (low, high) = off.fold((f64::MAX, f64::MIN), |(low, high), off| (low.min(off), high.max(off)));
     (high - low).max(0.0)
 }

@@ -2,7 +2,7 @@
 //! and so is how well all of them fit in the end.
 
 use super::Laid;
-use super::options::Options;
+use super::options::{Options, Preset};
 use super::score::Score;
 
 /// Parts of more stitches get one try, or, where it has inverted tiles, a few: the luck of single shapings evens out there.
@@ -76,7 +76,7 @@ fn variant(base: &Options, index: usize, rescue: bool) -> (Options, f64) {
     (options, change.turn)
 }
 
-/// The best of the tries that `lay` makes; `None` when none comes to an end. Where the first row is `given`, all tries
+/// The best of the tries that `lay` makes, in a hurry the only one; `None` when none comes to an end. Where the first row is `given`, all tries
 /// are made.
 pub(super) fn best(
     options: &Options,
@@ -86,9 +86,12 @@ pub(super) fn best(
 ) -> Option<Laid> {
     let tries = if expected > MOST_STITCHES { 1 } else { options.tries as usize };
     let most = if options.tries > 1 && expected <= MOST_RESCUED { tries + RESCUES } else { tries };
+    let first = Judge { bar: f64::INFINITY, level: true, stacks: false, opens: false };
+    if options.preset == Preset::Fast {
+        return lay(&options.hurried(), 0.0, first);
+    }
     if most == 1 {
-        let judge = Judge { bar: f64::INFINITY, level: true, stacks: false, opens: false };
-        return lay(options, 0.0, judge);
+        return lay(options, 0.0, first);
     }
     let mut best: Option<(Score, Laid)> = None;
     for index in 0..most {

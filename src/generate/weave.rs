@@ -6,17 +6,17 @@
 
 use super::batch;
 use super::marker::Marker;
-use super::options::Options;
+use super::options::{Options, Preset};
 use super::relax::{Brink, Effort, Ends, Mark, Relaxer};
 use super::rows::{Rows, row_speed};
-use super::score::Score;
+use super::score::{Score, any_inverted};
 use super::sheet::{Edge, EdgeKind, Foot, Quad, Shaped, Sheet, ShortRow, TileKind, Work};
 use super::short_rows::{GAP, Planner, Rules};
+use super::stacked::Stacked;
 use super::staircase::{Shaping, Staircase, Taste};
 use super::top::{self, Top};
 use super::tries::Judge;
 use crate::ir::{NodeId, Stitch};
-use crate::math;
 use crate::shape::ParametricSurface;
 use glam::DVec3;
 use std::ops::Range;
@@ -30,10 +30,6 @@ const LEVELING_MOST: f64 = 0.313;
 const EAGER: f64 = 0.328;
 /// Weight of square tiles while rows settle.
 const WINDOW_SQUARENESS: f64 = 0.675;
-/// Price of a short-row end right over one of the row before, its reach in stitches, and how fast it fades per batch.
-const STACKED_END: f64 = 1.5;
-const STACKED_REACH: f64 = 3.0;
-const FADE: f64 = 0.6;
 /// Share of the usual price of short-row ends in the last two rows, so that the top comes out level.
 const LAST_ROWS_PRICE: f64 = 0.4;
 /// Stitches more that a pass of a short row may be off before it is shaped, with full ease.
@@ -45,6 +41,9 @@ const FEWER_ENDS: f64 = 1.0;
 /// Fewest loops of a batch that short rows may lie on.
 const LEAST_RING: usize = 9;
 
+/// Sweeps in which inverted tiles of a hurried try shall open, and how many times these.
+const OPENING_SWEEPS: u32 = 14;
+const OPENINGS: u32 = 3;
 /// Sweeps over the whole after which a try is judged.
 const FIRST_SWEEPS: u32 = 4;
 /// Most short rows over each other in one round.
@@ -65,7 +64,7 @@ pub(crate) enum Outcome {
     Done,
     /// More nodes than any sensible count for this surface: it folds, or the gauge makes no sense here.
     Runaway,
-    /// The first sweeps over the whole leave it worse than asked for.
+    /// The first sweeps over the whole leave it worse than asked for, or a hurried try has inverted tiles.
     Outdone,
 }
 
@@ -83,8 +82,8 @@ pub(crate) struct Weaver<'s> {
     behind: Vec<NodeId>,
     last_wale: Option<(NodeId, NodeId)>,
     last_foot: Option<DVec3>,
-    /// Recent short-row ends: place around the tube, weight.
-    ends: Vec<(f64, f64)>,
+    /// Recent short-row ends.
+    ends: Stacked,
     ring_center: Option<(DVec3, usize)>,
     marker: Marker,
     range: [f64; 2],
@@ -123,7 +122,7 @@ impl<'s> Weaver<'s> {
             behind: Vec::new(),
             last_wale: None,
             last_foot: None,
-            ends: Vec::new(),
+            ends: Stacked::default(),
             ring_center: ring_center.map(|pole| (pole, first_row)),
             marker: Marker::new(options.ease() > 0.0, first_row),
             range,
@@ -187,10 +186,17 @@ impl<'s> Weaver<'s> {
             }
         }
         self.settle_all(self.options.sweeps - first, judge.level);
-        if self.options.sweeps > 0 {
-            self.settle_top();
+        if self.options.sweeps == 0 {
+            return Outcome::Done;
         }
-        Outcome::Done
+        self.settle_top();
+        let opened = (0..=OPENINGS).any(|k| {
+            if k > 0 {
+                self.settle_all(OPENING_SWEEPS, judge.level);
+            }
+            !self.quick() || !any_inverted(&self.sheet)
+        });
+        if opened { Outcome::Done } else { Outcome::Outdone }
     }
 
     /// Rows between the highest and the lowest open loop, each against its place on the helix.
@@ -262,11 +268,22 @@ impl<'s> Weaver<'s> {
                 0.0
             };
             let stretch = 1.0 + (LEVELING * lag).clamp(-LEVELING_MOST, LEVELING_MOST);
-            let mut foot = self.sheet.walk(self.surface, base, up, self.sheet.height * stretch, along);
+            let mut foot = self.walk(base, up, self.sheet.height * stretch, along);
             foot.v += 1.0;
             self.feet.push(foot);
         }
         n
+    }
+
+    /// Up from a base along the surface.
+    fn walk(&self, base: NodeId, up: DVec3, distance: f64, along: DVec3) -> Foot {
+        let walk = if self.quick() { Sheet::step } else { Sheet::walk };
+        walk(&self.sheet, self.surface, base, up, distance, along)
+    }
+
+    /// Someone waits: feet are looked up once, and nodes that settle stay on their planes until the end.
+    fn quick(&self) -> bool {
+        self.options.preset == Preset::Fast
     }
 
     /// Signed distance between two feet along the course, in stitch widths. Unsigned, crossed feet would look like growth.
@@ -360,11 +377,12 @@ impl<'s> Weaver<'s> {
         let effort = Effort { sweeps: self.options.window_sweeps, squareness: WINDOW_SQUARENESS };
         let ends = self.ends();
         // What lies two rows down hardly moves any more.
-        let exact = self.marks[self.marks.len().saturating_sub(1)].nodes;
+        let newest = self.marks[self.marks.len().saturating_sub(1)].nodes;
+        let exact = if self.quick() { usize::MAX } else { newest };
         self.relaxer.relax(self.surface, &mut self.sheet, mark, exact, effort, ends);
     }
 
-    /// Settles the whole; points are left to first order.
+    /// Settles the whole; points are left to first order, if they are not the last.
     fn settle_all(&mut self, sweeps: u32, level: bool) {
         if sweeps == 0 {
             return;
@@ -374,7 +392,8 @@ impl<'s> Weaver<'s> {
         let top = if level { top::first(&self.ring) } else { usize::MAX };
         let level = Some(Brink { rows: self.rows, top, firm: false });
         let ends = Ends { level, ..self.ends() };
-        self.relaxer.relax(self.surface, &mut self.sheet, mark, usize::MAX, effort, ends);
+        let exact = if self.quick() { 0 } else { usize::MAX };
+        self.relaxer.relax(self.surface, &mut self.sheet, mark, exact, effort, ends);
     }
 
     /// Settles the last rows once more where they end ragged.
@@ -383,17 +402,15 @@ impl<'s> Weaver<'s> {
         let mark = self.free(mark.copied().unwrap_or_default());
         let (surface, rows, ends, squareness) =
             (self.surface, self.rows, self.ends(), self.options.squareness);
-        Top { surface, rows, ring: &self.ring, mark, ends, squareness }
+        let quick = self.quick();
+        Top { surface, rows, ring: &self.ring, mark, ends, squareness, quick }
             .settle(&mut self.relaxer, &mut self.sheet);
     }
 
     /// Puts the new tops into the ring, with short rows over them where they lag behind, and short rows over these where
     /// even they do: a tight bend asks for many rows on its outer side.
     fn fill_up(&mut self, tops: Vec<NodeId>, top_base: &[NodeId]) {
-        for end in &mut self.ends {
-            end.1 *= FADE;
-        }
-        self.ends.retain(|end| end.1 > 0.1);
+        self.ends.fade();
         let around = tops.len() + self.ring.len();
         let cut = (0..tops.len()).map(|k| k > 0 && top_base[k] != top_base[k - 1]).collect();
         let start = self.ring.len();
@@ -427,7 +444,6 @@ impl<'s> Weaver<'s> {
         let size = around as f64;
         let eager = if self.options.paper { super::paper::EAGER } else { EAGER };
         let missing: Vec<f64> = tops.iter().map(|id| self.missing_at(*id) + eager).collect();
-        let extra: Vec<f64> = tops.iter().map(|id| self.stacked_price(*id, size)).collect();
         let least = (self.options.min_short_row as usize).min((0.3 * size) as usize).max(3);
         let greatest = (self.options.max_short_row * size) as usize;
         let (activation, tolerance) = (self.options.activation, self.options.tolerance);
@@ -436,6 +452,11 @@ impl<'s> Weaver<'s> {
             rules.end_price *= LAST_ROWS_PRICE;
         }
         rules.end_price *= 1.0 + FEWER_ENDS * self.options.ease();
+        if !rules.may_pay(&missing) {
+            return;
+        }
+        let extra: Vec<f64> =
+            tops.iter().map(|id| self.ends.price(self.sheet.v[*id as usize], size)).collect();
         let mut runs = Vec::new();
         self.planner.solve(&missing, &extra, &stretch.cut, &rules, &mut runs);
         for run in runs.iter().rev() {
@@ -447,25 +468,13 @@ impl<'s> Weaver<'s> {
         }
     }
 
-    /// Extra price of a run end at a node: short-row ends right over each other make a visible seam.
-    fn stacked_price(&self, id: NodeId, around: f64) -> f64 {
-        let v = self.sheet.v[id as usize];
-        self.ends
-            .iter()
-            .map(|&(end, weight)| {
-                let turn = (v - end) - (v - end).round();
-                let stitches = turn.abs() * around / STACKED_REACH;
-                if stitches > 4.0 { 0.0 } else { STACKED_END * weight * math::exp(-stitches * stitches) }
-            })
-            .sum()
-    }
-
     /// Adds one short row over a run of tops: back over it, forward over that. Returns the loops now open there, and where
     /// among them another run may begin or end.
     fn short_row(&mut self, tops: &[NodeId], run: Range<usize>) -> (Vec<NodeId>, Vec<bool>) {
         let (first, last) = (run.start, run.end - 1);
-        self.ends.push((self.sheet.v[tops[first] as usize], 1.0));
-        self.ends.push((self.sheet.v[tops[last] as usize], 1.0));
+        for top in [first, last].map(|end| tops[end] as usize) {
+            self.ends.push(self.sheet.v[top]);
+        }
         let (back_tops, back) = self.pass(&tops[run], TileKind::TurnRight);
         let (open, forward) = self.pass(&back_tops, TileKind::TurnLeft);
         let mut cut = Vec::with_capacity(open.len());
@@ -503,7 +512,7 @@ impl<'s> Weaver<'s> {
             .map(|i| {
                 let (left, right) = (bases[i.saturating_sub(reach)], bases[(i + reach).min(n - 1)]);
                 let (along, up) = self.sheet.directions(bases[i], left, right);
-                self.sheet.walk(self.surface, bases[i], up, self.sheet.height, along)
+                self.walk(bases[i], up, self.sheet.height, along)
             })
             .collect();
         let mut tops: Vec<NodeId> = Vec::with_capacity(n + 2);

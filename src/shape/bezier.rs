@@ -262,8 +262,9 @@ impl Chain {
     #[inline]
     pub fn locate(&self, u: f64) -> (usize, f64) {
         let scaled = u.clamp(0.0, 1.0) * self.pieces.len() as f64;
-        let segment = (scaled as usize).min(self.pieces.len() - 1);
-        (segment, scaled - segment as f64)
+        let last = self.pieces.len() - 1;
+        let (segment, t) = math::split(scaled);
+        if segment <= last { (segment, t) } else { (last, scaled - last as f64) }
     }
 
     /// The place at parameter `u`, which is clamped to [0, 1].
@@ -290,6 +291,15 @@ impl Chain {
             speed: size * piece.pace(t) * count,
             turn: (change - tangent * change.dot(tangent)) * (inverse * count),
         }
+    }
+
+    /// The point and the unit tangent of [`Chain::place`].
+    #[inline]
+    pub(super) fn stand(&self, segment: usize, t: f64) -> (DVec3, DVec3) {
+        let piece = &self.pieces[segment.min(self.pieces.len() - 1)];
+        let [a, b, c] = piece.direction;
+        let direction = a + (b + c * t) * t;
+        (piece.at(t), direction * (1.0 / direction.length()))
     }
 
     /// Position at parameter `u` in mm.

@@ -1,6 +1,7 @@
 //! Rotation-minimizing frames along a chain by double reflection (Wang, Jüttler, Zheng and Liu 2008).
 
 use super::bezier::{Chain, JOINT_DEGREES, Place};
+use crate::math;
 use glam::DVec3;
 
 /// Frames of a chain: a table of stations made by double reflection, with cubics between them.
@@ -81,12 +82,19 @@ impl Frames {
     /// derivative of any vector q fixed in its cross plane is -(turn . q) tangent.
     #[inline]
     pub fn axis(&self, segment: usize, t: f64, place: &Place) -> DVec3 {
-        let scaled = t * self.per_segment as f64;
-        let step = (scaled as usize).min(self.per_segment - 1);
-        let x = scaled - step as f64;
+        self.across(segment, t, place.tangent)
+    }
+
+    /// The same from the tangent alone.
+    #[inline]
+    pub(super) fn across(&self, segment: usize, t: f64, tangent: DVec3) -> DVec3 {
+        let scaled = t * f64::from(self.per_segment as u32);
+        let (step, x) = math::split(scaled);
+        let last = self.per_segment - 1;
+        let (step, x) = if step <= last { (step, x) } else { (last, scaled - last as f64) };
         let [a, b, c, d] = self.steps[(segment * self.per_segment + step).min(self.steps.len() - 1)];
         let axis = a + (b + (c + d * x) * x) * x;
-        let axis = axis - place.tangent * axis.dot(place.tangent);
+        let axis = axis - tangent * axis.dot(tangent);
         let square = axis.length_squared();
         // So close to one that a step of Newton gives the root.
         let scale = if (square - 1.0).abs() < 1e-7 { 1.5 - 0.5 * square } else { 1.0 / square.sqrt() };
@@ -132,7 +140,7 @@ impl Station {
 
 /// Angle between two unit vectors in radians, exact for small angles too.
 fn angle(a: DVec3, b: DVec3) -> f64 {
-    crate::math::atan2(a.cross(b).length(), a.dot(b))
+    math::atan2(a.cross(b).length(), a.dot(b))
 }
 
 /// Largest angle between the tangents of neighboring stations, with the parameter where it is.

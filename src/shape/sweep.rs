@@ -342,11 +342,11 @@ impl ParametricSurface for Sweep {
         }
         let (w, _) = self.meridian.eval(u);
         let (segment, t) = self.chain.locate(w);
-        let place = self.chain.place(segment, t);
-        let axis = self.frames.axis(segment, t, &place);
+        let (center, tangent) = self.chain.stand(segment, t);
+        let axis = self.frames.across(segment, t, tangent);
         let point = self.stack.at(w).point(v);
-        let across = axis * point.x + place.tangent.cross(axis) * point.y;
-        place.point + if self.stack.planar() { across } else { across + place.tangent * point.z }
+        let across = axis * point.x + tangent.cross(axis) * point.y;
+        center + if self.stack.planar() { across } else { across + tangent * point.z }
     }
 
     #[inline]

@@ -22,6 +22,7 @@ mod metrics;
 mod mutation;
 mod passes;
 mod patterns;
+mod presets;
 mod preview;
 mod programs;
 mod properties;

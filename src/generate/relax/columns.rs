@@ -70,6 +70,7 @@ impl Columns {
         loose.edges.clear();
         loose.turns.clear();
         self.wales.clear();
+        self.wales.reserve(quads.len() + quads.len() / 8 + 8);
         // The first lane has no wale before it.
         self.wales.push(Wale::default());
         let mut quads = quads.iter().peekable();

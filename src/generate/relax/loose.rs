@@ -98,11 +98,12 @@ impl Relaxer {
         }
         if let Some(Brink { rows, top, firm }) = ends.level {
             let pull = if firm { FIRM_PULL } else { PULL };
+            let mut knot = rows.count as usize;
             for i in top.max(span.first)..sheet.len() {
                 if !ends.pulls_level(sheet, i) {
                     continue;
                 }
-                if (rows.tau(sheet.u[i], sheet.v[i]) - sheet.v[i]).abs() > pull.far {
+                if (rows.tau(sheet.u[i], &mut knot) - sheet.v[i]).abs() > pull.far {
                     continue;
                 }
                 let (du, dv) = (sheet.du[i], sheet.dv[i]);
