@@ -39,7 +39,7 @@ use rows::Rows;
 use seam::Turned;
 use sheet::{Foot, Sheet};
 use std::borrow::Cow;
-use tries::Judge;
+use tries::{Judge, Part};
 use weave::{Outcome, Weaver};
 
 /// Nodes may slide this far over an open end while they settle.
@@ -181,7 +181,8 @@ fn lay_on(
     };
     let laid = laid.map(|(sheet, start)| Laid { sheet, start, spread: 0.0, turn: turned.by, lifted: None });
     let Some(Laid { sheet, start, turn, lifted, .. }) = laid.or_else(|| {
-        tries::best(options, expected, first.is_some(), |options, turn, judge| {
+        let part = Part { expected, given: first.is_some(), harsh: rows.is_harsh() };
+        tries::best(options, part, sink, |options, turn, judge, sink| {
             // Where the place of the first row is given, its height is varied.
             let lifted = first.and_then(|_| Rows::new(surface, [leads[0] + LIFT * turn, leads[1]], gauge));
             let turned = Turned { surface: turned.surface, by: turned.by + if fixed { 0.0 } else { turn } };
@@ -305,7 +306,7 @@ impl<'s> Ground<'s> {
             Ends {
                 range: self.range,
                 ring: self.poles[0].map(|pole| (pole, start)),
-                level: Some(Brink { rows, top, firm: false }),
+                level: Some(Brink { rows, top, firm: false, tail: true }),
                 opens: false,
             },
         );

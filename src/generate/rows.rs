@@ -14,6 +14,8 @@ const FEW: usize = 8;
 /// for it. Shorter rounds have no room for the short rows that this opens.
 const MOST_AHEAD: f64 = 1.15;
 const LONG_ROUND: f64 = 60.0;
+/// Farthest against closest distance of two rows, on average, over which a surface is harsh.
+const HARSH: f64 = 1.72;
 /// Most rows that are tabulated, against surfaces whose derivative by u is next to nothing.
 const MAX_ROWS: usize = 2_000_000;
 
@@ -25,6 +27,8 @@ pub(crate) struct Rows {
     scale: f64,
     /// Table rows before row 0: see [`lead`].
     lead: f64,
+    /// Farthest against closest distance of two rows, on average.
+    unevenness: f64,
     /// Number of rows; whole.
     pub count: f64,
 }
@@ -53,15 +57,21 @@ impl Rows {
         gauge: &Gauge,
     ) -> Option<Self> {
         let height = gauge.height;
-        let (mut knots, ahead) = table(surface, height, MEAN_SHARE)?;
+        let Table { mut knots, ahead, unevenness } = table(surface, height, MEAN_SHARE)?;
         if ahead > MOST_AHEAD && mean_girth(surface, &knots) > LONG_ROUND * gauge.width {
-            knots = table(surface, height, MEAN_SHARE * MOST_AHEAD / ahead)?.0;
+            knots = table(surface, height, MEAN_SHARE * MOST_AHEAD / ahead)?.knots;
         }
         let last = knots.len() - 1;
         let partial = (1.0 - knots[last - 1]) / (knots[last] - knots[last - 1]);
         let total = last as f64 - 1.0 + partial;
         let count = (total - lead - tail).round().max(1.0);
-        (total >= 0.75).then(|| Self { knots, scale: total / (count + lead + tail), lead, count })
+        let scale = total / (count + lead + tail);
+        (total >= 0.75).then_some(Self { knots, scale, lead, unevenness, count })
+    }
+
+    /// True where rows lie far closer on one side than on the other nearly everywhere, as in a sharp bend.
+    pub(crate) fn is_harsh(&self) -> bool {
+        self.unevenness > HARSH
     }
 
     /// The surface parameter of row `tau`.
@@ -110,10 +120,17 @@ fn mean_girth(surface: &dyn ParametricSurface, knots: &[f64]) -> f64 {
     sum / count
 }
 
-/// The table of rows with a share of the mean distance in their spacing, and by how many rows one side is ahead at the
-/// end: where rows lie closer than their spacing it gains on them, and short rows on the other side cannot hold it back; where
-/// they lie farther apart, short rows keep it level. `None` when the surface has no length.
-fn table(surface: &dyn ParametricSurface, height: f64, mean_share: f64) -> Option<(Vec<f64>, f64)> {
+/// Where rows lie, and how unevenly.
+struct Table {
+    knots: Vec<f64>,
+    /// By how many rows one side is ahead at the end: where rows lie closer than their spacing it gains on them, and short
+    /// rows on the other side cannot hold it back; where they lie farther apart, short rows keep it level.
+    ahead: f64,
+    unevenness: f64,
+}
+
+/// The table of rows with a share of the mean distance in their spacing. `None` when the surface has no length.
+fn table(surface: &dyn ParametricSurface, height: f64, mean_share: f64) -> Option<Table> {
     let spacing = |speeds: &[f64]| {
         let least = speeds.iter().copied().fold(f64::MAX, f64::min);
         let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
@@ -124,6 +141,7 @@ fn table(surface: &dyn ParametricSurface, height: f64, mean_share: f64) -> Optio
     let mut ahead = [0.0_f64; AROUND];
     let mut few = [Jet::default(); FEW];
     let mut all = [Jet::default(); AROUND];
+    let mut unevenness = 0.0;
     while u < 1.0 {
         // A few looks lead to the middle of the row, where all are taken.
         surface.ring(inside(u), 0.0, &mut few);
@@ -136,10 +154,13 @@ fn table(surface: &dyn ParametricSurface, height: f64, mean_share: f64) -> Optio
             return None;
         }
         u += step.min(1.0);
+        let [least, most] = [f64::min, f64::max].map(|of| speeds.iter().copied().reduce(of).unwrap_or(1.0));
+        unevenness += most / least;
         for (ahead, speed) in ahead.iter_mut().zip(speeds) {
             *ahead = (*ahead + 1.0 - speed / spacing).max(0.0);
         }
         knots.push(u);
     }
-    Some((knots, ahead.into_iter().fold(0.0, f64::max)))
+    let unevenness = unevenness / (knots.len() - 1) as f64;
+    Some(Table { knots, ahead: ahead.into_iter().fold(0.0, f64::max), unevenness })
 }

@@ -31,6 +31,11 @@ const FLAT: f64 = 0.05;
 pub(super) struct Score {
     pub total: f64,
     pub inverted: usize,
+    /// Mean absolute length error, and mean skew.
+    pub length: f64,
+    pub skew: f64,
+    /// Share of the increases that stand on others without need.
+    pub stacked: f64,
 }
 
 impl Score {
@@ -38,7 +43,8 @@ impl Score {
     /// so do increases that stand on others, and so do words, with so much ease.
     pub(super) fn of(sheet: &Sheet, ease: f64) -> Self {
         let fit = Self::of_fit(sheet);
-        Self { total: fit.total + STACKED * stacked(sheet), ..fit }.with_words(sheet, ease)
+        let stacked = stacked(sheet);
+        Self { total: fit.total + STACKED * stacked, stacked, ..fit }.with_words(sheet, ease)
     }
 
     /// The same with so much weight on few words: runs of stitches, and four words for each short row.
@@ -83,14 +89,14 @@ impl Score {
         }
         let share = |sum: f64, count: usize| sum / count.max(1) as f64;
         let edges = sheet.edges.len();
-        let lengths =
-            0.5 * (share(length, edges) / USUAL_LENGTH + share(square, edges).sqrt() / USUAL_SPREAD);
+        let (length, skew) = (share(length, edges), share(skew, sheet.quads.len()));
+        let lengths = 0.5 * (length / USUAL_LENGTH + share(square, edges).sqrt() / USUAL_SPREAD);
         let bias = BIAS * (share(sum, edges).abs() - BIAS_FREE).max(0.0);
-        let mut total = lengths + share(skew, sheet.quads.len()) / USUAL_SKEW + bias;
+        let mut total = lengths + skew / USUAL_SKEW + bias;
         if inverted > 0 {
             total += ANY_INVERTED + INVERTED * share(inverted as f64, sheet.quads.len());
         }
-        Self { total, inverted }
+        Self { total, inverted, length, skew, stacked: 0.0 }
     }
 }
 

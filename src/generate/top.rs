@@ -33,12 +33,14 @@ pub(super) struct Top<'w> {
     pub squareness: f64,
     /// Only what is very ragged is worth it.
     pub quick: bool,
+    /// Long and short edges pull more than in proportion.
+    pub tail: bool,
 }
 
 impl Top<'_> {
     /// Pulls the open loops firmly to their level until they are, unless that costs too much elsewhere or presses tiles flat.
     pub(super) fn settle(&self, relaxer: &mut Relaxer, sheet: &mut Sheet) {
-        let brink = Brink { rows: self.rows, top: first(self.ring), firm: true };
+        let brink = Brink { rows: self.rows, top: first(self.ring), firm: true, tail: self.tail };
         let ends = Ends { level: Some(brink), ..self.ends };
         let effort = Effort { sweeps: SWEEPS, squareness: self.squareness };
         let ragged = if self.quick { VERY_RAGGED } else { RAGGED };

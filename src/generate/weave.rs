@@ -89,6 +89,7 @@ pub(crate) struct Weaver<'s> {
     range: [f64; 2],
     part_batch: bool,
     opens: bool,
+    tail: bool,
     most: usize,
     // Buffers of one batch.
     feet: Vec<Foot>,
@@ -128,6 +129,7 @@ impl<'s> Weaver<'s> {
             range,
             part_batch: false,
             opens: false,
+            tail: true,
             most,
             feet: Vec::new(),
             gaps: Vec::new(),
@@ -142,7 +144,7 @@ impl<'s> Weaver<'s> {
     ///
     /// When its score is over the bar after the first sweeps it is given up.
     pub(crate) fn run(&mut self, judge: Judge, mut progress: impl FnMut(u64, u64)) -> Outcome {
-        self.opens = judge.opens;
+        (self.opens, self.tail) = (judge.opens, judge.tail);
         loop {
             self.look_for_missing();
             let length = self.batch_length();
@@ -390,7 +392,7 @@ impl<'s> Weaver<'s> {
         let mark = self.free(Mark::default());
         let effort = Effort { sweeps, squareness: self.options.squareness };
         let top = if level { top::first(&self.ring) } else { usize::MAX };
-        let level = Some(Brink { rows: self.rows, top, firm: false });
+        let level = Some(Brink { rows: self.rows, top, firm: false, tail: self.tail });
         let ends = Ends { level, ..self.ends() };
         let exact = if self.quick() { 0 } else { usize::MAX };
         self.relaxer.relax(self.surface, &mut self.sheet, mark, exact, effort, ends);
@@ -402,8 +404,8 @@ impl<'s> Weaver<'s> {
         let mark = self.free(mark.copied().unwrap_or_default());
         let (surface, rows, ends, squareness) =
             (self.surface, self.rows, self.ends(), self.options.squareness);
-        let quick = self.quick();
-        Top { surface, rows, ring: &self.ring, mark, ends, squareness, quick }
+        let (quick, tail) = (self.quick(), self.tail);
+        Top { surface, rows, ring: &self.ring, mark, ends, squareness, quick, tail }
             .settle(&mut self.relaxer, &mut self.sheet);
     }
 

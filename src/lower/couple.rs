@@ -13,11 +13,20 @@ const MOST_WORK: usize = 4_000_000;
 /// The closed cycle of places nearest to a ring of points: indices into `places` in the order of the ring, none twice.
 pub(super) fn cycle(ring: &[DVec3], places: &[DVec3]) -> Vec<usize> {
     let mut cycle: Vec<usize> = Vec::new();
+    let mut close: Vec<usize> = Vec::new();
     for (index, from) in ring.iter().enumerate() {
         let to = ring[(index + 1) % ring.len()];
+        // What is nearest to a point between the two is nearly so to their middle.
+        let middle = from.midpoint(to);
+        let least = places.iter().map(|place| place.distance(middle)).fold(f64::INFINITY, f64::min);
+        let reach = (least + from.distance(to)) * (1.0 + 1e-9);
+        close.clear();
+        close.extend(
+            (0..places.len()).filter(|place| places[*place].distance_squared(middle) <= reach * reach),
+        );
         for k in 0..BETWEEN {
             let point = from.lerp(to, k as f64 / BETWEEN as f64);
-            let near = (0..places.len()).min_by(|a, b| {
+            let near = close.iter().copied().min_by(|a, b| {
                 places[*a].distance_squared(point).total_cmp(&places[*b].distance_squared(point))
             });
             let Some(near) = near else { return cycle };
@@ -45,21 +54,31 @@ pub(super) fn couple(ring: &[DVec3], other: &[DVec3]) -> Vec<usize> {
     let around = nearest.unwrap_or(0);
     let window = (MOST_WORK / (n * m * 2 * most * most).max(1)).clamp(3.min(m), m);
     let distances: Vec<f64> = ring.iter().flat_map(|a| other.iter().map(|b| a.distance(*b))).collect();
+    // Every point of the ring costs at least the distance of its nearest partner.
+    let least: Vec<f64> =
+        distances.chunks_exact(m).map(|row| row.iter().copied().fold(f64::INFINITY, f64::min)).collect();
+    let mut rest = vec![0.0; n + 1];
     let mut table = Vec::new();
     let mut best: Option<(f64, usize, usize, Groups)> = None;
     // What the start at the nearest point costs, no other one need exceed.
-    let first = straight(n, m, most, f64::INFINITY, &mut table, |i, j| {
+    let first = straight([n, m], most, (f64::INFINITY, &rest), &mut table, |i, j| {
         distances.get(i * m + (around + j) % m).copied().unwrap_or(f64::INFINITY)
     });
     let mut bound = first.map_or(f64::INFINITY, |first| first.0 * (1.0 + 1e-9) + 1e-9);
     // A group of points may lie across the place where the ring is cut.
     for turn in 0..most.min(n) {
+        let row = |i: usize| if i < turn { n + i - turn } else { i - turn };
+        for i in (0..n).rev() {
+            rest[i] = rest[i + 1] + least[row(i)];
+        }
         for shift in 0..window {
             let start = (around + m + shift - window / 2) % m;
-            let row = |i: usize| if i < turn { n + i - turn } else { i - turn };
+            if distances[row(0) * m + start] + rest[1] > bound {
+                continue;
+            }
             let column = |j: usize| if start + j < m { start + j } else { start + j - m };
             let at = |i: usize, j: usize| distances[row(i) * m + column(j)];
-            if let Some((cost, groups)) = straight(n, m, most, bound, &mut table, at)
+            if let Some((cost, groups)) = straight([n, m], most, (bound, &rest), &mut table, at)
                 && best.as_ref().is_none_or(|best| cost < best.0 - 1e-9)
             {
                 bound = bound.min(cost);
@@ -84,12 +103,11 @@ pub(super) fn couple(ring: &[DVec3], other: &[DVec3]) -> Vec<usize> {
 }
 
 /// The best grouping of two open rows: total distance, and the sizes of groups. `None` where it would cost more than the
-/// bound. The table is room to work in.
+/// bound; from each point of the first on, the rest costs at least `rest`. The table is room to work in.
 fn straight(
-    n: usize,
-    m: usize,
+    [n, m]: [usize; 2],
     most: usize,
-    bound: f64,
+    (bound, rest): (f64, &[f64]),
     cost: &mut Vec<(f64, u32, u32)>,
     distance: impl Fn(usize, usize) -> f64,
 ) -> Option<(f64, Groups)> {
@@ -100,7 +118,7 @@ fn straight(
     for i in 0..n {
         for j in 0..m {
             let here = cost[i * width + j].0;
-            if here > bound || here == f64::INFINITY {
+            if here + rest[i] > bound || here == f64::INFINITY {
                 continue;
             }
             let mut offer = |mine: usize, theirs: usize, sum: f64| {

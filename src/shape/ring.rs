@@ -4,6 +4,8 @@ use glam::DVec3;
 
 /// The phase of samples is found to within this share of their distance.
 const NEAR: f64 = 0.01;
+/// Samples by which the phase is found where the number of all is a multiple of it.
+const FEW: usize = 32;
 /// Places around a ring at which it is first compared with another one.
 const WIDE: usize = 10;
 
@@ -126,15 +128,19 @@ impl Ring {
     /// Even samples turned least against those of the ring before: the phase minimizes the sum of squared distances.
     pub fn beside(&self, before: &[DVec3]) -> Vec<DVec3> {
         let count = before.len();
-        let rough = self.samples(count, 0.0);
-        let stride = (count / 32).max(1);
+        // A few samples tell the phase.
+        let stride = if count.is_multiple_of(FEW) { count / FEW } else { 1 };
+        let before: Vec<DVec3> = before.iter().copied().step_by(stride.max(1)).collect();
+        let few = before.len();
+        let mut samples = self.samples(few, 0.0);
+        let skip = (few / FEW).max(1);
         let cost = |shift: usize| -> f64 {
             let (mut sum, mut at) = (0.0, shift);
-            for point in before.iter().step_by(stride) {
-                sum += point.distance_squared(rough[at]);
-                at += stride;
-                if at >= count {
-                    at -= count;
+            for point in before.iter().step_by(skip) {
+                sum += point.distance_squared(samples[at]);
+                at += skip;
+                if at >= few {
+                    at -= few;
                 }
             }
             sum
@@ -148,38 +154,39 @@ impl Ring {
             best.1
         };
         // The cost changes slowly: first in wide steps, then around the best.
-        let wide = (count / WIDE).max(stride) / stride * stride;
-        let rough_best = (0..count).step_by(wide).fold(0, |_, shift| look(shift));
-        for step in (stride..wide).step_by(stride) {
-            look((rough_best + step) % count);
-            look((rough_best + count - step) % count);
+        let wide = (few / WIDE).max(skip) / skip * skip;
+        let rough_best = (0..few).step_by(wide).fold(0, |_, shift| look(shift));
+        for step in (skip..wide).step_by(skip) {
+            look((rough_best + step) % few);
+            look((rough_best + few - step) % few);
         }
-        let mut phase = best.1 as f64 / count as f64;
-        let mut samples = rough;
+        let mut phase = best.1 as f64 / few as f64;
         samples.rotate_left(best.1);
+        let mut moved = false;
         // Newton steps: the derivative of a sample by the phase is the tangent there.
         for _ in 0..3 {
             let (mut slope, mut bend) = (0.0, 0.0);
             let after = samples.iter().skip(1).chain(samples.first());
             let last = samples.last().into_iter().chain(&samples);
-            for (((sample, before), after), last) in samples.iter().zip(before).zip(after).zip(last) {
+            for (((sample, before), after), last) in samples.iter().zip(&before).zip(after).zip(last) {
                 let tangent = *after - *last;
                 slope += (*sample - *before).dot(tangent);
                 bend += tangent.length_squared();
             }
             // The tangents are those of two samples' way.
-            let step = if bend > 0.0 { slope / (bend * 0.5 * count as f64) } else { 0.0 };
+            let step = if bend > 0.0 { slope / (bend * 0.5 * few as f64) } else { 0.0 };
             // Equal rings differ by rounding only: they stay as they are.
             if step.abs() < 1e-9 {
                 break;
             }
-            phase -= step.clamp(-0.5 / count as f64, 0.5 / count as f64);
-            samples = self.samples(count, phase);
+            phase -= step.clamp(-0.5 / few as f64, 0.5 / few as f64);
+            moved = true;
             if step.abs() * (count as f64) < NEAR {
                 break;
             }
+            samples = self.samples(few, phase);
         }
-        samples
+        if moved || few != count { self.samples(count, phase) } else { samples }
     }
 }
 

@@ -230,19 +230,42 @@ impl Stack {
         rows
     }
 
+    /// The first of four samples around v that a cubic runs through, and the place between the middle ones.
+    fn column(&self, v: f64) -> (usize, f64) {
+        let scaled = (v - v.floor()) * self.around as f64;
+        let j = (scaled as usize).min(self.around - 1);
+        (j, scaled - j as f64)
+    }
+
+    /// The four samples of a row from column `j` on, turned by so many.
+    fn four(&self, row: usize, j: usize, turn: usize) -> &[DVec3] {
+        let column = if j + turn < self.around { j + turn } else { j + turn - self.around };
+        let first = row * (self.around + BESIDE) + column;
+        &self.samples[first..first + 4]
+    }
+
+    fn place(&self, u: f64, v: f64) -> DVec3 {
+        let (j, t) = self.column(v);
+        let along = values(t);
+        let mut place = DVec3::ZERO;
+        for (row, turn, value, _) in self.weights(u) {
+            if value == 0.0 {
+                continue;
+            }
+            let mut point = DVec3::ZERO;
+            for (sample, along) in self.four(row, j, turn).iter().zip(&along) {
+                point += *sample * *along;
+            }
+            place += point * value;
+        }
+        place
+    }
+
     fn eval(&self, u: f64, v: f64) -> Jet {
-        let count = self.around;
-        let scaled = (v - v.floor()) * count as f64;
-        let j = (scaled as usize).min(count - 1);
-        let t = scaled - j as f64;
-        let (t2, t3) = (t * t, t * t * t);
-        let along = [
-            0.5 * (2.0 * t2 - t - t3),
-            0.5 * (3.0 * t3 - 5.0 * t2 + 2.0),
-            0.5 * (t + 4.0 * t2 - 3.0 * t3),
-            0.5 * (t3 - t2),
-        ];
-        let per = 0.5 * count as f64;
+        let (j, t) = self.column(v);
+        let t2 = t * t;
+        let along = values(t);
+        let per = 0.5 * self.around as f64;
         let slope = [
             per * (4.0 * t - 1.0 - 3.0 * t2),
             per * (9.0 * t2 - 10.0 * t),
@@ -254,12 +277,8 @@ impl Stack {
             if value == 0.0 && rise == 0.0 {
                 continue;
             }
-            let column = if j + turn < count { j + turn } else { j + turn - count };
-            let first = row * (count + BESIDE) + column;
             let (mut point, mut dv) = (DVec3::ZERO, DVec3::ZERO);
-            for (sample, (along, slope)) in
-                self.samples[first..first + 4].iter().zip(along.iter().zip(&slope))
-            {
+            for (sample, (along, slope)) in self.four(row, j, turn).iter().zip(along.iter().zip(&slope)) {
                 point += *sample * *along;
                 dv += *sample * *slope;
             }
@@ -271,9 +290,20 @@ impl Stack {
     }
 }
 
+/// Weights of four samples in a cubic between the middle two.
+fn values(t: f64) -> [f64; 4] {
+    let (t2, t3) = (t * t, t * t * t);
+    [
+        0.5 * (2.0 * t2 - t - t3),
+        0.5 * (3.0 * t3 - 5.0 * t2 + 2.0),
+        0.5 * (t + 4.0 * t2 - 3.0 * t3),
+        0.5 * (t3 - t2),
+    ]
+}
+
 impl ParametricSurface for Stack {
     fn point(&self, u: f64, v: f64) -> DVec3 {
-        self.eval(u, v).point
+        self.place(u, v)
     }
     fn jet(&self, u: f64, v: f64) -> Jet {
         self.eval(u, v)

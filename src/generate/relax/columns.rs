@@ -7,7 +7,7 @@ use crate::generate::sheet::{Edge, EdgeKind, Quad, TileKind};
 use crate::ir::NodeId;
 use glam::Vec4;
 
-/// In the final sweeps a strain pulls more than in proportion, so that few edges are far off: by this times its square,
+/// In most final sweeps a strain pulls more than in proportion, so that few edges are far off: by this times its square,
 /// and at most by so much.
 const TAIL_WEIGHT: f32 = 17.7;
 const TAIL_MOST: f32 = 0.198;

@@ -96,7 +96,7 @@ impl Relaxer {
         if ends.opens || ends.level.is_some() {
             self.stiffen_narrow(stiffness, sheet, span, scales);
         }
-        if let Some(Brink { rows, top, firm }) = ends.level {
+        if let Some(Brink { rows, top, firm, .. }) = ends.level {
             let pull = if firm { FIRM_PULL } else { PULL };
             let mut knot = rows.count as usize;
             for i in top.max(span.first)..sheet.len() {

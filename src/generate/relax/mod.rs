@@ -70,6 +70,14 @@ pub(crate) struct Brink<'r> {
     pub top: usize,
     /// The pull is hard, also far away.
     pub firm: bool,
+    /// Long and short edges pull more than in proportion, so that few are far off.
+    pub tail: bool,
+}
+
+impl Ends<'_> {
+    fn tail(&self) -> bool {
+        self.level.is_some_and(|level| level.tail)
+    }
 }
 
 /// How long and how square.
@@ -216,7 +224,7 @@ impl Relaxer {
             }
             self.gradient.clear();
             self.gradient.resize(self.point.len(), Vec4::ZERO);
-            if ends.level.is_some() {
+            if ends.tail() {
                 self.columns.pull::<true>(&self.point, &mut self.gradient, &scales);
             } else {
                 self.columns.pull::<false>(&self.point, &mut self.gradient, &scales);
@@ -277,7 +285,7 @@ impl Relaxer {
         matrices.clear();
         matrices.resize(2 * self.point.len(), Vec4::ZERO);
         let stiffness = matrices.as_chunks_mut::<2>().0;
-        if ends.level.is_some() {
+        if ends.tail() {
             self.columns.stiffen::<true>(&self.point, stiffness, scales);
         } else {
             self.columns.stiffen::<false>(&self.point, stiffness, scales);

@@ -335,7 +335,7 @@ impl Mesh {
             }
             let most = rings.iter().map(Ring::length).fold(0.0, f64::max);
             let around = (SAMPLES_A_STITCH * most / plan.gauge.width).clamp(48.0, 256.0) as usize;
-            let stack = Stack::new(&rings, poles, around.next_multiple_of(16));
+            let stack = Stack::new(&rings, poles, around.next_multiple_of(32));
             let Some(mut stack) = stack else {
                 return Err(Fault::NoRows { at: self.middle(tip) });
             };
@@ -420,7 +420,7 @@ fn grow(mut pieces: Vec<Piece>, limbs: Vec<limb::Limb>, plan: &Plan) -> Result<V
         let at = limb.pole.or_else(|| limb.rings.last().map(Ring::center)).unwrap_or_default();
         let most = limb.rings.iter().map(Ring::length).fold(0.0, f64::max);
         let around = (SAMPLES_A_STITCH * most / plan.gauge.width).clamp(48.0, 256.0) as usize;
-        let stack = Stack::new(&limb.rings, [None, limb.pole], around.next_multiple_of(16));
+        let stack = Stack::new(&limb.rings, [None, limb.pole], around.next_multiple_of(32));
         let stack = stack.ok_or(Fault::NoRows { at })?;
         let base: Vec<DVec3> = (0..16).map(|k| stack.point(0.0, f64::from(k) / 16.0)).collect();
         let ends = stack.ends();

@@ -25,9 +25,10 @@ const WIDER: f64 = 1.65;
 const MARGIN: f64 = 0.15;
 /// Tries at a narrower cut.
 const TRIES: u32 = 4;
-/// Most rings of triangles in a patch, and shortest and longest edges in stitches.
+/// Rings of triangles that a patch has unless its edges are shortest, and most of all; shortest and longest edges in stitches.
+const LEAST_RINGS: f64 = 7.0;
 const MOST_RINGS: usize = 48;
-const EDGES: [f64; 2] = [0.5, 1.0];
+const EDGES: [f64; 2] = [0.5, 1.6];
 
 /// A limb that was cut off.
 #[derive(Clone, Debug)]
@@ -404,6 +405,7 @@ impl Mesh {
             None => p,
         };
         let length = self.length(edge);
+        let coarsest = coarsest.min(length / LEAST_RINGS / std::f64::consts::TAU).max(finest);
         let around = length / (length / edge.len() as f64).clamp(finest, coarsest);
         let rings = ((around / std::f64::consts::TAU) as usize).clamp(3, MOST_RINGS);
         let mut before: Vec<u32> = edge.iter().map(|v| place[*v as usize]).collect();

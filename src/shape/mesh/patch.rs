@@ -4,7 +4,7 @@
 use glam::{DMat3, DVec3};
 
 /// Most points that a patch is laid through.
-const MOST: usize = 40;
+const MOST: usize = 26;
 /// Steps to the surface.
 const STEPS: u32 = 8;
 /// A step of this share of the patch is the last one.

@@ -76,7 +76,7 @@ impl Mesh {
         let most = rings.iter().map(Ring::length).fold(0.0, f64::max);
         let around = (1.5 * most / plan.gauge.width).clamp(48.0, 256.0) as usize;
         let mut stack =
-            Stack::new(&rings, poles, around.next_multiple_of(16)).ok_or(Fault::NoRows { at: last })?;
+            Stack::new(&rings, poles, around.next_multiple_of(32)).ok_or(Fault::NoRows { at: last })?;
         stack.revolve(plan.gauge.width);
         Ok(Cut {
             pieces: vec![Piece {
