@@ -31,6 +31,7 @@ const RESCUE_SWEEPS: u32 = 3;
 
 /// What a try is held to.
 #[derive(Clone, Copy)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(super) struct Judge {
     /// The score after the first sweeps over the whole over which it is given up.
     pub bar: f64,

@@ -40,7 +40,6 @@ const PASS_RIDGE: f64 = 0.6;
 const FEWER_ENDS: f64 = 1.0;
 /// Fewest loops of a batch that short rows may lie on.
 const LEAST_RING: usize = 9;
-
 /// Sweeps in which inverted tiles of a hurried try shall open, and how many times these.
 const OPENING_SWEEPS: u32 = 14;
 const OPENINGS: u32 = 3;
@@ -400,13 +399,12 @@ impl<'s> Weaver<'s> {
 
     /// Settles the last rows once more where they end ragged.
     fn settle_top(&mut self) {
-        let mark = self.marks[self.marks.len().saturating_sub(top::ROWS)..].first();
-        let mark = self.free(mark.copied().unwrap_or_default());
-        let (surface, rows, ends, squareness) =
-            (self.surface, self.rows, self.ends(), self.options.squareness);
-        let (quick, tail) = (self.quick(), self.tail);
-        Top { surface, rows, ring: &self.ring, mark, ends, squareness, quick, tail }
-            .settle(&mut self.relaxer, &mut self.sheet);
+        let last = self.marks.len().saturating_sub(top::ROWS);
+        let mark = self.free(self.marks.get(last).copied().unwrap_or_default());
+        let (surface, rows, ends, ring) = (self.surface, self.rows, self.ends(), &self.ring);
+        let (squareness, quick, tail) = (self.options.squareness, self.quick(), self.tail);
+        let top = Top { surface, rows, ring, mark, ends, squareness, quick, tail };
+        top.settle(&mut self.relaxer, &mut self.sheet);
     }
 
     /// Puts the new tops into the ring, with short rows over them where they lag behind, and short rows over these where
