@@ -2,12 +2,10 @@
 
 use super::rows::Rows;
 use super::sheet::{Foot, Shaped, Sheet};
+use super::stout::LEAST_LOOPS;
 use crate::ir::Gauge;
 use crate::shape::{ParametricSurface, girth};
 use glam::DVec3;
-
-/// Fewest stitches of an open first row.
-const LEAST_AROUND: f64 = 4.0;
 
 /// Length of one turn of the helix on a surface of revolution.
 pub(super) fn turn_length(surface: &dyn ParametricSurface, rows: &Rows, round: u32) -> f64 {
@@ -23,11 +21,11 @@ pub(super) fn turn_length(surface: &dyn ParametricSurface, rows: &Rows, round: u
     length / f64::from(SAMPLES)
 }
 
-/// Stitches of a magic ring: the girth one row from the pole, 4 to 8, and the customary 6 when that is within one.
+/// Stitches of a magic ring: the girth one row from the pole, 5 to 8, and the customary 6 when that is within one.
 pub(super) fn ring_size(surface: &dyn ParametricSurface, rows: &Rows, gauge: &Gauge) -> u32 {
     let u = rows.at(0.5);
     let girth: f64 = (0..24).map(|k| surface.jet(u, f64::from(k) / 24.0).dv.length()).sum::<f64>() / 24.0;
-    let count = (girth / gauge.width).round().clamp(4.0, 8.0) as u32;
+    let count = (girth / gauge.width).round().clamp(LEAST_LOOPS as f64, 8.0) as u32;
     if count.abs_diff(6) <= 1 { 6 } else { count }
 }
 
@@ -50,7 +48,7 @@ pub(super) fn even_places(surface: &dyn ParametricSurface, rows: &Rows, width: f
         before = point;
     }
     let step = f64::from(step.max(1));
-    let count = ((total / (width * step)).round() * step).max(LEAST_AROUND) as usize;
+    let count = ((total / (width * step)).round() * step).max(LEAST_LOOPS as f64) as usize;
     let mut j = 0;
     (0..count)
         .map(|i| {

@@ -21,6 +21,7 @@ mod sheet;
 mod short_rows;
 mod stacked;
 mod staircase;
+mod stout;
 mod symmetric;
 mod top;
 mod tries;
@@ -39,6 +40,7 @@ use rows::Rows;
 use seam::Turned;
 use sheet::{Foot, Sheet};
 use std::borrow::Cow;
+use stout::Stout;
 use tries::{Judge, Part};
 use weave::{Outcome, Weaver};
 
@@ -126,12 +128,20 @@ fn lay_on(
     // A branch in a slit begins at an end of it, with as many loops below as above.
     let slit = matches!(tube.attachment, Some(Attachment { joint: Joint::Opening, .. }));
     let even = options.symmetric && loops.is_none() && !slit && is_revolution(exact);
-    let quick = options.preset == Preset::Fast;
-    let stitches = if quick { patches::LARGE } else { patches::USUAL };
-    let patches = if even || options.paper {
+    let ends = [tube.start, tube.end];
+    let look_up = |surface| if even { None } else { looked_up(surface, ends, gauge, options) };
+    let patches = look_up(exact);
+    let stout = if options.paper || even {
         None
     } else {
-        Patches::new(exact, [tube.start, tube.end], gauge, stitches)
+        Stout::new(exact, patches.as_ref().map(|patches| patches.thinnest), gauge)
+    };
+    let (exact, patches) = match &stout {
+        Some(stout) => {
+            let stout: &dyn ParametricSurface = stout;
+            (stout, look_up(stout))
+        }
+        None => (exact, patches),
     };
     let picked_up = loops.map(|loops| first_row::picked_up(exact, loops));
     let target: &dyn ParametricSurface = match &patches {
@@ -148,20 +158,9 @@ fn lay_on(
     let fixed = slit || picked_up.is_some();
     let first = picked_up.as_ref().map(|(_, feet)| feet.as_slice());
     let surface: &dyn ParametricSurface = &turned;
-    let ends = [tube.start, tube.end];
     let expected = area(surface, 4, 16) / (gauge.width * gauge.height);
-    if !expected.is_finite() {
-        return fail(
-            sink,
-            Code::SurfaceBroken,
-            "the surface has no finite area".into(),
-            "look for control points or sections that are far too large, or no numbers",
-        );
-    }
-    if expected > f64::from(MAX_LOOPS) {
-        let message =
-            format!("this takes about {expected:.0} stitches, more than the {MAX_LOOPS} that Picot handles");
-        return fail(sink, Code::TooLarge, message, "use a larger stitch, or check the unit of the file");
+    if let Err((code, message, help)) = fits(expected) {
+        return fail(sink, code, message, help);
     }
     sink.stage("rows");
     let mut leads = ends.map(rows::lead);
@@ -174,15 +173,18 @@ fn lay_on(
     };
     sink.stage("stitches");
     let most = (3.0 * expected) as usize + 10_000;
-    let laid = if even {
-        Ground::new(surface, ends, &rows, gauge, &options.hurried()).lay_evenly(sink)
-    } else {
-        None
+    let even_rounds = |options: &Options, sink: &Sink<'_>| {
+        let ground = Ground::new(surface, ends, &rows, gauge, options);
+        let (mut sheet, start) = ground.lay_evenly(sink)?;
+        if patches.is_some() {
+            sheet.put_on(exact, turned.by);
+        }
+        Some(Laid { sheet, start, spread: 0.0, turn: turned.by, lifted: None })
     };
-    let laid = laid.map(|(sheet, start)| Laid { sheet, start, spread: 0.0, turn: turned.by, lifted: None });
+    let laid = if even { even_rounds(&options.hurried(), sink) } else { None };
     let Some(Laid { sheet, start, turn, lifted, .. }) = laid.or_else(|| {
         let part = Part { expected, given: first.is_some(), harsh: rows.is_harsh() };
-        tries::best(options, part, sink, |options, turn, judge, sink| {
+        let lay = |options: &Options, turn: f64, judge: Judge, sink: &Sink<'_>| {
             // Where the place of the first row is given, its height is varied.
             let lifted = first.and_then(|_| Rows::new(surface, [leads[0] + LIFT * turn, leads[1]], gauge));
             let turned = Turned { surface: turned.surface, by: turned.by + if fixed { 0.0 } else { turn } };
@@ -202,9 +204,11 @@ fn lay_on(
                 sheet.put_on(exact, turned.by);
             }
             Some(Laid { sheet, start, spread, turn: turned.by, lifted })
-        })
+        };
+        let even = |sink: &Sink<'_>| if fixed { None } else { even_rounds(options, sink) };
+        tries::best(options, part, sink, lay, even)
     }) else {
-        if quick {
+        if options.preset == Preset::Fast {
             return lay_on(exact, tube, loops, gauge, &options.unhurried(), sink);
         }
         let message =
@@ -221,6 +225,31 @@ fn lay_on(
     }
     let poles = Ground::new(surface, ends, &rows, gauge, options).poles;
     Some(finish::graph(&sheet, lifted.as_ref().unwrap_or(&rows), start, poles, turn))
+}
+
+/// Whether so many stitches can be laid; else what to say.
+fn fits(expected: f64) -> Result<(), (Code, String, &'static str)> {
+    if !expected.is_finite() {
+        let help = "look for control points or sections that are far too large, or no numbers";
+        return Err((Code::SurfaceBroken, "the surface has no finite area".into(), help));
+    }
+    if expected > f64::from(MAX_LOOPS) {
+        let message =
+            format!("this takes about {expected:.0} stitches, more than the {MAX_LOOPS} that Picot handles");
+        return Err((Code::TooLarge, message, "use a larger stitch, or check the unit of the file"));
+    }
+    Ok(())
+}
+
+/// What the general generator looks up instead of a surface; `None` where the surface itself is as quick, or asked for.
+fn looked_up<'s>(
+    surface: &'s dyn ParametricSurface,
+    ends: [End; 2],
+    gauge: &Gauge,
+    options: &Options,
+) -> Option<Patches<'s>> {
+    let stitches = if options.preset == Preset::Fast { patches::LARGE } else { patches::USUAL };
+    if options.paper { None } else { Patches::new(surface, ends, gauge, stitches) }
 }
 
 /// Warns of a drift that no one would have overlooked.

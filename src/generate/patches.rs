@@ -46,6 +46,8 @@ pub(super) struct Patches<'s> {
     /// Where along they begin and end.
     first: usize,
     range: [f64; 2],
+    /// The least girth of a ring of corners, in mm.
+    pub(super) thinnest: f64,
     /// By rows around.
     each: Vec<Patch>,
 }
@@ -66,10 +68,13 @@ impl<'s> Patches<'s> {
         let origin = surface.point(0.5, 0.0);
         let mut each = Vec::with_capacity((last - first) * around);
         let mut ring = vec![Jet::default(); around];
+        let mut thinnest = f64::INFINITY;
         let (mut below, mut corners) = (Vec::with_capacity(around), Vec::with_capacity(around));
         for i in first..=last {
             std::mem::swap(&mut below, &mut corners);
             surface.ring(i as f64 / along as f64, 0.0, &mut ring);
+            let girth = ring.iter().map(|jet| jet.dv.length()).sum::<f64>() / around as f64;
+            thinnest = thinnest.min(girth);
             fill(&mut corners, &ring, origin, 1.0 / along as f64, 1.0 / around as f64);
             if !corners.iter().all(Corner::is_finite) {
                 return None;
@@ -79,7 +84,7 @@ impl<'s> Patches<'s> {
             each.extend(sides.zip(next).map(|((a, c), (b, d))| patch([a, b, c, d])));
         }
         let (numbers, range) = ([along as f64, around as f64], [first as f64, last as f64]);
-        Some(Self { surface, origin, around, numbers, first, range, each })
+        Some(Self { surface, origin, around, numbers, first, range, thinnest, each })
     }
 
     /// Patches along and around, for their size where rows are densest.

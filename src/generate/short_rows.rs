@@ -4,11 +4,21 @@
 //! price per run end. That is the paper's double threshold: a run of least length opens when its mean missing height passes
 //! the activation threshold, and a gap between two runs is bridged when its mean passes the tolerance threshold.
 
+use crate::ir::NodeId;
 use std::collections::VecDeque;
 use std::ops::Range;
 
 /// Least stitches between two runs, and between a run and the end of the row.
 pub(crate) const GAP: usize = 3;
+
+/// A stretch of the ring that short rows may lie on.
+pub(crate) struct Stretch {
+    /// Its place in the ring.
+    pub start: usize,
+    pub tops: Vec<NodeId>,
+    /// Where a run may begin or end: not between the two tops of one increase.
+    pub cut: Vec<bool>,
+}
 
 /// What the plan has to keep.
 #[derive(Clone, Copy, Debug)]

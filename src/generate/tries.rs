@@ -24,6 +24,8 @@ const BAD: f64 = 4.0;
 const BAR: f64 = 0.1;
 /// Further tries for parts on which all are poor, or have inverted tiles.
 const RESCUES: usize = 8;
+/// How many times worse even rounds may be than what has inverted tiles, and be kept instead.
+const TANGLED: f64 = 2.0;
 /// Tries after the first are made side by side, so many at a time whatever the number of threads.
 const BESIDE: usize = 2;
 /// Sweeps of a rescue: inverted tiles open slowly.
@@ -167,6 +169,7 @@ pub(super) fn best(
     part: Part,
     sink: &Sink<'_>,
     lay: impl Fn(&Options, f64, Judge, &Sink<'_>) -> Option<Laid> + Sync,
+    even: impl Fn(&Sink<'_>) -> Option<Laid>,
 ) -> Option<Laid> {
     let tries = if part.expected > MOST_STITCHES { 1 } else { options.tries as usize };
     let most = if options.tries > 1 && part.expected <= MOST_RESCUED { tries + RESCUES } else { tries };
@@ -180,7 +183,11 @@ pub(super) fn best(
     }
     let mut best: Option<Made> = None;
     let mut next = 0;
-    while next < most && !best.as_ref().is_some_and(|best| part.is_done(best, next, tries)) {
+    // Once more around where tiles are inverted, with increases free to stand on others where they were not.
+    let last = if options.tries > 1 && tries > 1 { most + CHANGES.len() } else { most };
+    let done =
+        |best: &Made, next: usize| part.is_done(best, next, tries) || next >= most && best.0.inverted == 0;
+    while next < last && !best.as_ref().is_some_and(|best| done(best, next)) {
         let bad = best.as_ref().is_none_or(|(score, _)| score.inverted > 0 || score.total > BAD);
         let bar = match &best {
             Some((score, _)) if score.inverted == 0 => score.total + BAR,
@@ -189,7 +196,7 @@ pub(super) fn best(
         let make = |index: usize, sink: &Sink<'_>| {
             let rescue = index >= tries && bad;
             let (options, turn) = part.variant(options, index, rescue);
-            let stacks = rescue && index % 2 == 1;
+            let stacks = rescue && (index + index / CHANGES.len()) % 2 == 1;
             let opens = index > 0 && (bad || !part.harsh);
             let judge = Judge { bar, level: !rescue, stacks, opens, tail: !part.harsh || rescue };
             let laid = lay(&options, turn, judge, sink)?;
@@ -197,7 +204,7 @@ pub(super) fn best(
         };
         let made: Vec<Option<Made>> = match next {
             0 => vec![make(0, sink)],
-            _ => (next..most.min(next + BESIDE))
+            _ => (next..last.min(next + BESIDE))
                 .into_par_iter()
                 .map(|index| make(index, &Sink::new()))
                 .collect(),
@@ -207,6 +214,15 @@ pub(super) fn best(
             if best.as_ref().is_none_or(|best| part.is_better(&made, best, next)) {
                 best = Some(made);
             }
+        }
+    }
+    if best.as_ref().is_none_or(|(score, _)| score.inverted > 0 || score.total > BAD)
+        && let Some(laid) = even(sink)
+    {
+        let score = Score::of(&laid.sheet, options.ease());
+        let worth = |best: &Score| best.total * if best.inverted > score.inverted { TANGLED } else { 1.0 };
+        if best.as_ref().is_none_or(|(best, _)| score.total < worth(best)) {
+            best = Some((score, laid));
         }
     }
     best.map(|(_, laid)| laid)

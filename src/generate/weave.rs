@@ -11,9 +11,10 @@ use super::relax::{Brink, Effort, Ends, Mark, Relaxer};
 use super::rows::{Rows, row_speed};
 use super::score::{Score, any_inverted};
 use super::sheet::{Edge, EdgeKind, Foot, Quad, Shaped, Sheet, ShortRow, TileKind, Work};
-use super::short_rows::{GAP, Planner, Rules};
+use super::short_rows::{GAP, Planner, Rules, Stretch};
 use super::stacked::Stacked;
 use super::staircase::{Shaping, Staircase, Taste};
+use super::stout::LEAST_LOOPS;
 use super::top::{self, Top};
 use super::tries::Judge;
 use crate::ir::{NodeId, Stitch};
@@ -47,15 +48,6 @@ const OPENINGS: u32 = 3;
 const FIRST_SWEEPS: u32 = 4;
 /// Most short rows over each other in one round.
 const MOST_NESTED: u32 = 6;
-
-/// A stretch of the ring that short rows may lie on.
-struct Stretch {
-    /// Its place in the ring.
-    start: usize,
-    tops: Vec<NodeId>,
-    /// Where a run may begin or end: not between the two tops of one increase.
-    cut: Vec<bool>,
-}
 
 /// How the weaving ended.
 pub(crate) enum Outcome {
@@ -320,7 +312,9 @@ impl<'s> Weaver<'s> {
         let width = self.sheet.width;
         for (i, (&base, foot)) in bases.iter().zip(feet).enumerate() {
             let plan = self.staircase.plan[i];
+            let left = tops.len() + self.ring.len() + bases.len() - i;
             if plan == Shaping::Dec
+                && left > LEAST_LOOPS
                 && let Some(&top) = tops.last()
                 && let Some(work) = self.sheet.main.last_mut()
             {

@@ -10,6 +10,7 @@ mod command;
 mod corpus;
 mod ebnf;
 mod examples;
+mod fidelity;
 mod grammar;
 mod hand;
 mod knitout;

@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The generator `SplitMix64`: the same surfaces on every machine.
-struct Random(u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
     fn bits(&mut self) -> u64 {
@@ -22,7 +22,7 @@ impl Random {
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)
     }
-    fn within(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
     fn below(&mut self, n: u64) -> u64 {
@@ -31,7 +31,7 @@ impl Random {
 }
 
 /// A surface that someone could want: lengths of 20 to 150 mm, radii of 4 to 25 mm, stitches of 2.5 to 8 mm.
-fn surface(random: &mut Random) -> (TubeSpec, Gauge) {
+pub(crate) fn surface(random: &mut Random) -> (TubeSpec, Gauge) {
     let length = random.within(20.0, 150.0);
     let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z) * length;
     let bow = random.within(0.1, 0.8);

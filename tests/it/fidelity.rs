@@ -1,0 +1,119 @@
+//! Random surfaces once more: how well their stitches fit, and that hardly one lies with its inside out.
+
+use crate::maker::{make, shape, written_rounds};
+use crate::properties::{Random, surface};
+use glam::{DVec2, DVec3};
+use picot::diag::Sink;
+use picot::generate::{Options, generate};
+use picot::ir::Gauge;
+use picot::metrics::{Measure, measure};
+use picot::shape::{Bezier, End, Interpolation, Profile, Section, Sweep, Tube, TubeSpec};
+
+/// A tube along a planar curve of 40 to 140 mm, with radii of 4 to 20 mm, and the greatest product of curvature and radius.
+fn planar(random: &mut Random) -> (TubeSpec, f64) {
+    let length = random.within(40.0, 140.0);
+    let bow = DVec3::new(0.0, length * random.within(-0.5, 0.5), length * random.within(0.2, 0.8));
+    let end = DVec3::new(0.0, length * random.within(-0.7, 0.7), length * random.within(0.3, 1.2));
+    let radii = [random.within(4.0, 20.0), random.within(4.0, 20.0)];
+    let bend = (0..=100).map(|i| {
+        let u = f64::from(i) / 100.0;
+        let first = bow * (2.0 * (1.0 - u)) + (end - bow) * (2.0 * u);
+        let second = (end - bow * 2.0) * 2.0;
+        let radius = radii[0] + (radii[1] - radii[0]) * u;
+        radius * first.cross(second).length() / first.length().powi(3)
+    });
+    let bend = bend.fold(0.0, f64::max);
+    let section = |at: f64, radius: f64| Section {
+        at,
+        profile: Profile::Ellipse { axes: [radius; 2], offset: DVec2::ZERO },
+    };
+    let spec = TubeSpec {
+        curve: vec![Bezier::new(&[DVec3::ZERO, bow, end]).expect("three points")],
+        sections: vec![section(0.0, radii[0]), section(1.0, radii[1])],
+        interpolation: Interpolation::Linear,
+        start: End::Open,
+        end: End::Open,
+    };
+    (spec, bend)
+}
+
+fn lay(spec: &TubeSpec, gauge: Gauge) -> Option<Measure> {
+    let tube = Tube::new("tube", Box::new(Sweep::new(spec).ok()?), [spec.start, spec.end]);
+    let graph = generate(&tube, &gauge, &Options::default(), &mut Sink::new())?;
+    Some(measure(&tube, &gauge, &graph))
+}
+
+/// The kind of tube that the published shapes are, bent up to four fifths of what can be.
+#[test]
+fn planar_tubes_fit_and_none_has_an_inverted_tile() {
+    let mut random = Random(7);
+    let (mut lengths, mut skews) = (Vec::new(), Vec::new());
+    while lengths.len() < 300 {
+        let (spec, bend) = planar(&mut random);
+        if bend > 0.8 {
+            continue;
+        }
+        let width = random.within(1.5, 3.0);
+        let measure = lay(&spec, Gauge::new(width, width)).expect("it can be laid");
+        assert_eq!(measure.inverted_tiles, 0, "number {}, bend {bend:.2}", lengths.len());
+        lengths.push(measure.length_error.chord.mean_abs);
+        skews.push(measure.skew.all.mean);
+    }
+    lengths.sort_by(f64::total_cmp);
+    skews.sort_by(f64::total_cmp);
+    let at = |values: &[f64], share: usize| values[values.len() * share / 100];
+    let figures = [at(&lengths, 50), at(&lengths, 90), at(&skews, 50), at(&skews, 90)];
+    let bounds = [0.033, 0.042, 0.073, 0.093];
+    assert!(figures.iter().zip(bounds).all(|(figure, bound)| *figure <= bound), "{figures:?}");
+}
+
+/// Rounds of one or two stitches are no tube.
+#[test]
+fn a_spike_is_worked_in_rounds_of_five_at_least() {
+    let tip = "{ at = 0, circle = 0, offset = [-2.4, -2.3] }, { at = 1, circle = 10 }";
+    let tail = "{ at = 0, circle = 10 }, { at = 1, circle = 0, offset = [-2.4, -2.3] }";
+    for (start, end, sections) in [("closed", "open", tip), ("open", "closed", tail)] {
+        let shape = shape(&format!(
+            "name = \"spike\"\nunit = \"mm\"\n[gauge]\nstitch = {{ width = 3, height = 3 }}\n[trunk]\n\
+             curve = [[0, 0, 0], [130, 0, 0], [130, 115, 0], [0, 115, 0]]\n\
+             start = \"{start}\"\nend = \"{end}\"\nsection = [{sections}]\n"
+        ));
+        let program = make(&shape, &picot::Options::default());
+        let rounds = written_rounds(&program);
+        let counts =
+            rounds.iter().filter_map(|line| line.rsplit_once('(')?.1.split(')').next()?.parse().ok());
+        let counts: Vec<u32> = counts.collect();
+        let whole = counts.split_last().map_or(&[][..], |(_, whole)| whole);
+        assert!(whole.len() > 20 && whole.iter().all(|count| *count >= 5), "{rounds:?}");
+        let measure = picot::measure(&shape, &program);
+        assert!((0.98..1.4).contains(&measure.coverage), "{}", measure.coverage);
+        assert_eq!(measure.inverted_tiles, 0);
+    }
+}
+
+/// Inverted tiles over so many harsh surfaces, as a share of all stitches.
+#[expect(clippy::print_stderr, reason = "the share is worth a look")]
+fn inverted(count: u64) -> f64 {
+    let mut random = Random(2026);
+    let (mut stitches, mut inverted) = (0, 0);
+    for _ in 0..count {
+        let (spec, gauge) = surface(&mut random);
+        if let Some(measure) = lay(&spec, gauge) {
+            stitches += measure.stitches;
+            inverted += measure.inverted_tiles;
+        }
+    }
+    eprintln!("{count} surfaces: {inverted} inverted tiles among {stitches} stitches");
+    inverted as f64 / stitches as f64
+}
+
+#[test]
+fn harsh_surfaces_have_next_to_no_inverted_tiles() {
+    assert!(inverted(500) <= 1e-4);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn many_harsh_surfaces_have_next_to_no_inverted_tiles() {
+    assert!(inverted(20_000) <= 1e-4);
+}
