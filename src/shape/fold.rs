@@ -9,6 +9,10 @@ use glam::{DVec2, DVec3};
 
 /// Refuses tubes that fold or run through themselves.
 pub(super) fn check(chain: &Chain, frames: &Frames, stack: &Stack, breaks: &[f64]) -> Result<(), Fault> {
+    if chain.is_straight() && stack.flat() {
+        // Planes across a line never meet.
+        return Ok(());
+    }
     tight(chain, frames, stack, breaks)?;
     crossing(chain, frames, stack)
 }

@@ -283,9 +283,20 @@ struct Smooth {
 }
 
 impl LoopStack {
+    /// Whether each loop lies in a plane across the curve.
+    pub(super) fn flat(&self) -> bool {
+        self.lines.iter().flat_map(|line| &line.knots).all(|[point, slope]| point.z == 0.0 && slope.z == 0.0)
+    }
+
     /// A stack of sections; `points` says which of them are points.
     pub(super) fn new(sections: &[Section], points: &[bool], smooth: bool) -> Result<Self, Fault> {
-        let count = if sections.len() > 64 { 64 } else { 256 };
+        let points_of = |it: &Section| match &it.profile {
+            Profile::Loop(points) => points.len(),
+            Profile::Ellipse { .. } => 0,
+        };
+        let most = sections.iter().map(points_of).max().unwrap_or_default();
+        // A few knots to each point that is given.
+        let count = if sections.len() > 64 { 64 } else { (4 * most.min(64)).clamp(96, 256) };
         let mut lines: Vec<ClosedLine> = Vec::with_capacity(sections.len());
         let mut last: Option<usize> = None;
         for (section, it) in sections.iter().enumerate() {

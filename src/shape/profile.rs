@@ -142,6 +142,14 @@ impl Stack {
         (self.start_point, self.end_point)
     }
 
+    /// Whether each section lies in a plane across the curve.
+    pub(super) fn flat(&self) -> bool {
+        match &self.kind {
+            Kind::Ellipses { .. } => true,
+            Kind::Loops(stack) => stack.flat(),
+        }
+    }
+
     /// Whether the profile has a part along the tangent.
     pub(super) fn planar(&self) -> bool {
         matches!(self.kind, Kind::Ellipses { .. })
