@@ -367,3 +367,21 @@ impl Chain {
         u.clamp(0.0, 1.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_runs_on_in_one_direction_is_straight() {
+        let at = DVec3::new;
+        let straight = |segments: &[Bezier]| Chain::new(segments).expect("sound").is_straight();
+        let curve = |points: &[DVec3]| Bezier::new(points).expect("two to four points");
+        let (a, b, c) = (at(1.0, 2.0, 3.0), at(3.0, 6.0, 9.0), at(4.0, 8.0, 12.0));
+        assert!(straight(&[Bezier::line(a, c)]));
+        assert!(straight(&[curve(&[a, b, c])]));
+        assert!(straight(&[Bezier::line(a, b), Bezier::line(b, c)]));
+        assert!(!straight(&[curve(&[a, c, b])]), "it turns back");
+        assert!(!straight(&[curve(&[a, b, at(4.0, 8.0, 12.1)])]));
+    }
+}
