@@ -205,7 +205,7 @@ fn lay_on(
             }
             Some(Laid { sheet, start, spread, turn: turned.by, lifted })
         };
-        let even = |sink: &Sink<'_>| if fixed { None } else { even_rounds(options, sink) };
+        let even = |sink: &Sink<'_>| if fixed || options.paper { None } else { even_rounds(options, sink) };
         tries::best(options, part, sink, lay, even)
     }) else {
         if options.preset == Preset::Fast {
