@@ -145,8 +145,13 @@ async function check(name) {
 
   // Wire-frame.
   await page.locator("input[value=wire]").check();
-  const wire = await stats();
-  assert.ok(wire.mode === "wire" && wire.triangles < first.triangles);
+  // What is drawn is counted with the next frame.
+  let wire = await stats();
+  for (let wait = 0; wait < 30 && wire.triangles >= first.triangles; wait += 1) {
+    await page.waitForTimeout(100);
+    wire = await stats();
+  }
+  assert.ok(wire.mode === "wire" && wire.triangles < first.triangles, JSON.stringify(wire));
   await page.locator("input[value=yarn]").check();
 
   // Hovering names the stitch; a click finds it in the text.
