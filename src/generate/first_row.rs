@@ -23,9 +23,8 @@ pub(super) fn turn_length(surface: &dyn ParametricSurface, rows: &Rows, round: u
 
 /// Stitches of a magic ring: the girth one row from the pole, 5 to 8, and the customary 6 when that is within one.
 pub(super) fn ring_size(surface: &dyn ParametricSurface, rows: &Rows, gauge: &Gauge) -> u32 {
-    let u = rows.at(0.5);
-    let girth: f64 = (0..24).map(|k| surface.jet(u, f64::from(k) / 24.0).dv.length()).sum::<f64>() / 24.0;
-    let count = (girth / gauge.width).round().clamp(LEAST_LOOPS as f64, 8.0) as u32;
+    let count =
+        (girth(surface, rows.at(0.5), 24) / gauge.width).round().clamp(LEAST_LOOPS as f64, 8.0) as u32;
     if count.abs_diff(6) <= 1 { 6 } else { count }
 }
 

@@ -181,14 +181,17 @@ pub(super) fn best(
         let (options, turn) = part.variant(options, 0, false);
         return lay(&options, turn, Judge { tail: !part.harsh, ..first }, sink);
     }
+    let scored = |laid: Laid| (Score::of(&laid.sheet, options.ease()).with_level(laid.spread), laid);
+    let is_bad =
+        |best: &Option<Made>| best.as_ref().is_none_or(|(score, _)| score.inverted > 0 || score.total > BAD);
     let mut best: Option<Made> = None;
     let mut next = 0;
     // Once more around where tiles are inverted, with increases free to stand on others where they were not.
-    let last = if options.tries > 1 && tries > 1 { most + CHANGES.len() } else { most };
+    let last = if tries > 1 { most + CHANGES.len() } else { most };
     let done =
         |best: &Made, next: usize| part.is_done(best, next, tries) || next >= most && best.0.inverted == 0;
     while next < last && !best.as_ref().is_some_and(|best| done(best, next)) {
-        let bad = best.as_ref().is_none_or(|(score, _)| score.inverted > 0 || score.total > BAD);
+        let bad = is_bad(&best);
         let bar = match &best {
             Some((score, _)) if score.inverted == 0 => score.total + BAR,
             _ => f64::INFINITY,
@@ -199,8 +202,7 @@ pub(super) fn best(
             let stacks = rescue && (index + index / CHANGES.len()) % 2 == 1;
             let opens = index > 0 && (bad || !part.harsh);
             let judge = Judge { bar, level: !rescue, stacks, opens, tail: !part.harsh || rescue };
-            let laid = lay(&options, turn, judge, sink)?;
-            Some((Score::of(&laid.sheet, options.ease()).with_level(laid.spread), laid))
+            lay(&options, turn, judge, sink).map(scored)
         };
         let made: Vec<Option<Made>> = match next {
             0 => vec![make(0, sink)],
@@ -216,10 +218,9 @@ pub(super) fn best(
             }
         }
     }
-    if best.as_ref().is_none_or(|(score, _)| score.inverted > 0 || score.total > BAD)
-        && let Some(laid) = even(sink)
+    if is_bad(&best)
+        && let Some((score, laid)) = even(sink).map(scored)
     {
-        let score = Score::of(&laid.sheet, options.ease());
         let worth = |best: &Score| best.total * if best.inverted > score.inverted { TANGLED } else { 1.0 };
         if best.as_ref().is_none_or(|(best, _)| score.total < worth(best)) {
             best = Some((score, laid));

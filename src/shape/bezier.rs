@@ -255,12 +255,11 @@ impl Chain {
     /// Whether the chain runs straight on: all its control points lie in order on one line.
     pub(super) fn is_straight(&self) -> bool {
         // From control point to control point, three times.
-        let steps = self.pieces.iter().flat_map(|piece| {
+        let mut steps = self.pieces.iter().flat_map(|piece| {
             let [_, a, b, c] = piece.point;
             [a, a + b, a + 2.0 * b + 3.0 * c]
         });
         let Some(way) = steps.clone().sum::<DVec3>().try_normalize() else { return false };
-        let mut steps = steps;
         steps.all(|step| step.dot(way) >= 0.0 && step.cross(way).length() <= 1e-12 * self.length())
     }
 

@@ -17,18 +17,23 @@ pub(crate) fn shape(name: &str) -> Tube {
         ),
         _ => ([[0.0, 0.0, 0.0], [0.0, 0.0, 90.0], [0.0, 100.0, 0.0]], [10.0, 4.0]),
     };
+    let spec = tapered(&curve.map(DVec3::from_array), radii);
+    Tube::new(name, Box::new(Sweep::new(&spec).expect("a sound tube")), [End::Open; 2])
+}
+
+/// An open tube along a Bézier curve, of circles whose radius is linear in the curve parameter.
+pub(crate) fn tapered(curve: &[DVec3], radii: [f64; 2]) -> TubeSpec {
     let section = |at: f64, radius: f64| Section {
         at,
         profile: Profile::Ellipse { axes: [radius; 2], offset: DVec2::ZERO },
     };
-    let spec = TubeSpec {
-        curve: vec![Bezier::new(&curve.map(DVec3::from_array)).expect("three points")],
+    TubeSpec {
+        curve: vec![Bezier::new(curve).expect("two to four points")],
         sections: vec![section(0.0, radii[0]), section(1.0, radii[1])],
         interpolation: Interpolation::Linear,
         start: End::Open,
         end: End::Open,
-    };
-    Tube::new(name, Box::new(Sweep::new(&spec).expect("a sound tube")), [End::Open; 2])
+    }
 }
 
 /// Figures of the published implementation. It takes tangents by differences over 0.05 of the curve parameter, so its

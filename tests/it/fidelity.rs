@@ -1,13 +1,14 @@
 //! Random surfaces once more: how well their stitches fit, and that hardly one lies with its inside out.
 
+use crate::baseline::tapered;
 use crate::maker::{make, shape, written_rounds};
 use crate::properties::{Random, surface};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use picot::diag::Sink;
 use picot::generate::{Options, generate};
 use picot::ir::Gauge;
 use picot::metrics::{Measure, measure};
-use picot::shape::{Bezier, End, Interpolation, Profile, Section, Sweep, Tube, TubeSpec};
+use picot::shape::{Sweep, Tube, TubeSpec};
 
 /// A tube along a planar curve of 40 to 140 mm, with radii of 4 to 20 mm, and the greatest product of curvature and radius.
 fn planar(random: &mut Random) -> (TubeSpec, f64) {
@@ -23,18 +24,7 @@ fn planar(random: &mut Random) -> (TubeSpec, f64) {
         radius * first.cross(second).length() / first.length().powi(3)
     });
     let bend = bend.fold(0.0, f64::max);
-    let section = |at: f64, radius: f64| Section {
-        at,
-        profile: Profile::Ellipse { axes: [radius; 2], offset: DVec2::ZERO },
-    };
-    let spec = TubeSpec {
-        curve: vec![Bezier::new(&[DVec3::ZERO, bow, end]).expect("three points")],
-        sections: vec![section(0.0, radii[0]), section(1.0, radii[1])],
-        interpolation: Interpolation::Linear,
-        start: End::Open,
-        end: End::Open,
-    };
-    (spec, bend)
+    (tapered(&[DVec3::ZERO, bow, end], radii), bend)
 }
 
 fn lay(spec: &TubeSpec, gauge: Gauge) -> Option<Measure> {
