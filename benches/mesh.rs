@@ -17,14 +17,14 @@ use std::hint::black_box;
 #[path = "../tests/it/solids.rs"]
 mod solids;
 
-/// Compiles to text; the number of stitches.
-fn compile(file: &[u8], size: f64) -> u64 {
+/// Compiles an OBJ file to text; the number of stitches.
+fn compile(file: &[u8], unit: Unit, size: f64) -> u64 {
     let loader = |_: &str| Err(std::io::ErrorKind::NotFound.into());
     let mut sources = Sources::new(&loader);
     let mut sink = Sink::new();
     let options = picot::Options {
         gauge: Some(Gauge::new(size, size)),
-        mesh: Reading { unit: Some(Unit::Mm), up: Some(Up::Z) },
+        mesh: Reading { unit: Some(unit), up: Some(Up::Z) },
         ..picot::Options::default()
     };
     let source = sources.add("mesh.obj", file.to_vec()).expect("small");
@@ -81,12 +81,21 @@ fn limbs(u: f64, v: f64) -> DVec3 {
 }
 
 fn cactus(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("cactus");
-    let text = cactus_mesh();
+    gauges(criterion, "cactus", &cactus_mesh(), Unit::Mm);
+}
+
+/// A mesh of one's own: the file that `PICOT_MESH` names, in centimeters.
+fn given(criterion: &mut Criterion) {
+    let Some(path) = std::env::var_os("PICOT_MESH") else { return };
+    gauges(criterion, "given", &std::fs::read(path).expect("an OBJ file"), Unit::Cm);
+}
+
+fn gauges(criterion: &mut Criterion, name: &str, text: &[u8], unit: Unit) {
+    let mut group = criterion.benchmark_group(name);
     for size in [2.5, 2.0, 1.5] {
-        group.throughput(Throughput::Elements(compile(&text, size)));
+        group.throughput(Throughput::Elements(compile(text, unit, size)));
         group.bench_with_input(BenchmarkId::from_parameter(size), &size, |bencher, size| {
-            bencher.iter(|| compile(&text, *size));
+            bencher.iter(|| compile(text, unit, *size));
         });
     }
     group.finish();
@@ -115,12 +124,12 @@ fn large(criterion: &mut Criterion) {
             let triangles = u64::from(2 * (rows - 1) * around);
             group.throughput(Throughput::Elements(triangles));
             group.bench_with_input(BenchmarkId::new(name, triangles), &text, |bencher, text| {
-                bencher.iter(|| compile(text, 5.0));
+                bencher.iter(|| compile(text, Unit::Mm, 5.0));
             });
         }
     }
     group.finish();
 }
 
-criterion_group!(benches, cactus, large);
+criterion_group!(benches, cactus, given, large);
 criterion_main!(benches);
