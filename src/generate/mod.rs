@@ -35,7 +35,7 @@ use crate::ir::{Gauge, Graph, Hand, MAX_LOOPS};
 use crate::shape::{Attachment, End, Joint, ParametricSurface, Tube, area, for_maker, is_revolution};
 use glam::DVec3;
 use patches::Patches;
-use relax::{Brink, Effort, Ends, Mark, Relaxer};
+use relax::{Brink, Effort, Ends, Firm, Mark, Relaxer};
 use rows::Rows;
 use seam::Turned;
 use sheet::{Foot, Sheet};
@@ -335,7 +335,7 @@ impl<'s> Ground<'s> {
             Ends {
                 range: self.range,
                 ring: self.poles[0].map(|pole| (pole, start)),
-                level: Some(Brink { rows, top, firm: false, tail: true }),
+                level: Some(Brink { rows, top, firm: Firm::No, tail: true }),
                 opens: false,
             },
         );

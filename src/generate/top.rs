@@ -3,10 +3,10 @@
 //! Short rows leave steps two rows high, and the last ones have no row above them that would hide them. The sweeps over the whole
 //! level short steps; long ones, as in rounds of many fine stitches, take the rows below with them, and more sweeps.
 
-use super::relax::{Brink, Effort, Ends, Mark, Relaxer};
+use super::relax::{Brink, Effort, Ends, Firm, Mark, Relaxer};
 use super::rows::Rows;
 use super::score::Score;
-use super::sheet::Sheet;
+use super::sheet::{Sheet, Work};
 use crate::ir::NodeId;
 use crate::shape::ParametricSurface;
 
@@ -15,6 +15,9 @@ pub(super) const ROWS: usize = 12;
 /// Highest minus lowest open loop from which on it is worth the while, in rows; and the same while someone waits.
 const RAGGED: f64 = 0.77;
 const VERY_RAGGED: f64 = 1.2;
+/// On parts of so many stitches the top is a small share of the whole, and worth it from here on.
+const MANY: usize = 5_000;
+const UNEVEN: f64 = 0.3;
 /// What the whole may lose by that, as a score.
 const PRICE: f64 = 0.1;
 /// Sweeps at once, and how many times these.
@@ -25,7 +28,7 @@ const TIMES: usize = 3;
 pub(super) struct Top<'w> {
     pub surface: &'w dyn ParametricSurface,
     pub rows: &'w Rows,
-    /// The open loops.
+    /// The open loops, and those under the last few: see [`open`].
     pub ring: &'w [NodeId],
     /// Where the last rows begin.
     pub mark: Mark,
@@ -40,12 +43,19 @@ pub(super) struct Top<'w> {
 impl Top<'_> {
     /// Pulls the open loops firmly to their level until they are, unless that costs too much elsewhere or presses tiles flat.
     pub(super) fn settle(&self, relaxer: &mut Relaxer, sheet: &mut Sheet) {
-        let brink = Brink { rows: self.rows, top: first(self.ring), firm: true, tail: self.tail };
+        let many = sheet.len() > MANY;
+        let firm = if many { Firm::Closely } else { Firm::Yes };
+        let brink = Brink { rows: self.rows, top: first(self.ring), firm, tail: self.tail };
         let ends = Ends { level: Some(brink), ..self.ends };
         let effort = Effort { sweeps: SWEEPS, squareness: self.squareness };
-        let ragged = if self.quick { VERY_RAGGED } else { RAGGED };
+        let ragged = match self.quick {
+            true => VERY_RAGGED,
+            false if many => UNEVEN,
+            false => RAGGED,
+        };
         for _ in 0..TIMES {
-            if spread(sheet, self.rows, self.ring) <= ragged {
+            let off = spread(sheet, self.rows, self.ring);
+            if off <= ragged {
                 return;
             }
             let before = Places::of(sheet, self.mark.nodes);
@@ -54,15 +64,29 @@ impl Top<'_> {
             let mut after = Score::of_fit(sheet);
             if after.inverted > fit.inverted {
                 // Softly, what was pressed flat opens again.
-                let soft = Ends { level: Some(Brink { firm: false, ..brink }), ..ends };
+                let soft = Ends { level: Some(Brink { firm: Firm::No, ..brink }), ..ends };
                 relaxer.relax(self.surface, sheet, self.mark, 0, effort, soft);
                 after = Score::of_fit(sheet);
             }
-            if after.inverted > fit.inverted || after.total > fit.total + PRICE {
+            let worse = spread(sheet, self.rows, self.ring) > off;
+            if worse || after.inverted > fit.inverted || after.total > fit.total + PRICE {
                 return before.restore(sheet);
             }
         }
     }
+}
+
+/// Share of a turn that may be taken off again at the end (`lower::trim`).
+pub(super) const SLIVER: f64 = 1.0 / 6.0;
+
+/// The open loops, and those that will be open where the last few stitches are taken off again.
+pub(super) fn open(sheet: &Sheet, rows: &Rows, ring: &[NodeId]) -> Vec<NodeId> {
+    let mut open = ring.to_vec();
+    let late = |work: &&Work| sheet.v[work.top[1] as usize] >= rows.count - SLIVER;
+    for work in sheet.main.iter().rev().take_while(late) {
+        open.extend(&work.base[..if work.base[0] == work.base[1] { 1 } else { 2 }]);
+    }
+    open
 }
 
 /// The first of the open loops.

@@ -7,7 +7,7 @@
 use super::batch;
 use super::marker::Marker;
 use super::options::{Options, Preset};
-use super::relax::{Brink, Effort, Ends, Mark, Relaxer};
+use super::relax::{Brink, Effort, Ends, Firm, Mark, Relaxer};
 use super::rows::{Rows, row_speed};
 use super::score::{Score, any_inverted};
 use super::sheet::{Edge, EdgeKind, Foot, Quad, Shaped, Sheet, ShortRow, TileKind, Work};
@@ -385,7 +385,7 @@ impl<'s> Weaver<'s> {
         let mark = self.free(Mark::default());
         let effort = Effort { sweeps, squareness: self.options.squareness };
         let top = if level { top::first(&self.ring) } else { usize::MAX };
-        let level = Some(Brink { rows: self.rows, top, firm: false, tail: self.tail });
+        let level = Some(Brink { rows: self.rows, top, firm: Firm::No, tail: self.tail });
         let ends = Ends { level, ..self.ends() };
         let exact = if self.quick() { 0 } else { usize::MAX };
         self.relaxer.relax(self.surface, &mut self.sheet, mark, exact, effort, ends);
@@ -395,7 +395,8 @@ impl<'s> Weaver<'s> {
     fn settle_top(&mut self) {
         let last = self.marks.len().saturating_sub(top::ROWS);
         let mark = self.free(self.marks.get(last).copied().unwrap_or_default());
-        let (surface, rows, ends, ring) = (self.surface, self.rows, self.ends(), &self.ring);
+        let ring = &top::open(&self.sheet, self.rows, &self.ring);
+        let (surface, rows, ends) = (self.surface, self.rows, self.ends());
         let (squareness, quick, tail) = (self.options.squareness, self.quick(), self.tail);
         let top = Top { surface, rows, ring, mark, ends, squareness, quick, tail };
         top.settle(&mut self.relaxer, &mut self.sheet);

@@ -1,7 +1,7 @@
 //! The few pulls that do not lie between neighboring wales: steps and other lone edges, turns, narrow tiles, the magic
 //! ring and the level of the last turn.
 
-use super::{Brink, Ends, Level, Relaxer, STEP_REST, STEP_WEIGHT, Scales, Span, TINY};
+use super::{Brink, Ends, Firm, Level, Relaxer, STEP_REST, STEP_WEIGHT, Scales, Span, TINY};
 use crate::generate::sheet::{EdgeKind, Quad, Sheet, TileKind};
 use glam::{DVec3, Vec3A, Vec4, Vec4Swizzles};
 
@@ -12,6 +12,7 @@ const NARROW_WEIGHT: f32 = 2.0;
 /// How the last turn of tops is pulled toward its level, and the same where it is to be firm.
 const PULL: Pull = Pull { weight: 2.8, slack: 0.29, far: 1.0 };
 const FIRM_PULL: Pull = Pull { weight: 10.0, slack: 0.25, far: 1.6 };
+const CLOSE_SLACK: f64 = 0.1;
 /// How much higher than the helix that level lies, in rows.
 const LEVEL_SHIFT: f64 = 0.15;
 /// How much farther than the slack the pull grows, in this slack.
@@ -97,7 +98,11 @@ impl Relaxer {
             self.stiffen_narrow(stiffness, sheet, span, scales);
         }
         if let Some(Brink { rows, top, firm, .. }) = ends.level {
-            let pull = if firm { FIRM_PULL } else { PULL };
+            let pull = match firm {
+                Firm::No => PULL,
+                Firm::Yes => FIRM_PULL,
+                Firm::Closely => Pull { slack: CLOSE_SLACK, ..FIRM_PULL },
+            };
             let mut knot = rows.count as usize;
             for i in top.max(span.first)..sheet.len() {
                 if !ends.pulls_level(sheet, i) {

@@ -25,6 +25,8 @@ const STEP_REST: f32 = 0.9;
 const SHARES: u8 = 2;
 /// The last turn of tops begins a hair behind a whole turn before the end.
 const LAST_TURN: f64 = 0.999;
+/// The same where the pull is firm: with those that will be the last when a sliver of a round has been taken off.
+const LAST_TURNS: f64 = LAST_TURN + super::top::SLIVER;
 /// Derivatives of the surface and the matrices are taken anew every so many sweeps; between them points move to first
 /// order.
 const REFRESH: u32 = 7;
@@ -68,10 +70,19 @@ pub(crate) struct Brink<'r> {
     pub rows: &'r Rows,
     /// Where these tops begin; with none, the sweeps are final and there is no pull.
     pub top: usize,
-    /// The pull is hard, also far away.
-    pub firm: bool,
+    pub firm: Firm,
     /// Long and short edges pull more than in proportion, so that few are far off.
     pub tail: bool,
+}
+
+/// How hard the last turn is pulled to its level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Firm {
+    No,
+    /// Hard, also far away.
+    Yes,
+    /// So, and with little slack.
+    Closely,
 }
 
 impl Ends<'_> {
@@ -343,7 +354,10 @@ impl Ends<'_> {
     /// The node is among the tops of the last turn, which settle level.
     #[inline]
     fn pulls_level(&self, sheet: &Sheet, i: usize) -> bool {
-        self.level.is_some_and(|brink| i >= brink.top && sheet.v[i] >= brink.rows.count - LAST_TURN)
+        self.level.is_some_and(|brink| {
+            let turn = if brink.firm == Firm::No { LAST_TURN } else { LAST_TURNS };
+            i >= brink.top && sheet.v[i] >= brink.rows.count - turn
+        })
     }
 }
 
