@@ -85,6 +85,7 @@ fn cactus(criterion: &mut Criterion) {
 }
 
 /// A mesh of one's own: the file that `PICOT_MESH` names, in centimeters.
+#[expect(clippy::disallowed_methods, reason = "the mesh to time is named from the outside")]
 fn given(criterion: &mut Criterion) {
     let Some(path) = std::env::var_os("PICOT_MESH") else { return };
     gauges(criterion, "given", &std::fs::read(path).expect("an OBJ file"), Unit::Cm);
