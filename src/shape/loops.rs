@@ -1,6 +1,7 @@
 //! Closed loops of points: made smooth, spread evenly by arc length, turned to each other, and stacked.
 
 use super::spec::{Fault, Profile, Section};
+use super::spline::Spline;
 use super::{Jet, smooth};
 use crate::math::{TAU, atan2, sin_cos};
 use glam::{DVec2, DVec3};
@@ -73,12 +74,12 @@ impl ClosedLine {
     /// Point and derivative by v.
     #[inline]
     pub fn eval(&self, v: f64) -> (DVec3, DVec3) {
+        self.eval_at(Knot::at(v, self.knots.len()))
+    }
+
+    #[inline]
+    fn eval_at(&self, Knot { index, t }: Knot) -> (DVec3, DVec3) {
         let count = self.knots.len();
-        // Truncation is cheaper than floor; v beyond the integers has no fraction to lose.
-        let fraction = v - (v as i64) as f64;
-        let scaled = (if fraction < 0.0 { fraction + 1.0 } else { fraction }) * count as f64;
-        let index = (scaled as usize).min(count - 1);
-        let t = scaled - index as f64;
         let [a, da] = self.knots[index];
         let [b, db] = self.knots[if index + 1 == count { 0 } else { index + 1 }];
         let rise = b - a;
@@ -137,17 +138,34 @@ impl ClosedLine {
 
     /// The phase that turns this line least against `other`, both seen from their centers.
     pub fn phase_against(&self, other: &Self) -> f64 {
-        const SAMPLES: u32 = 64;
-        let sample = |line: &Self| -> Vec<DVec3> {
+        const SAMPLES: usize = 64;
+        const LANES: usize = 4;
+        // Three rows of coordinates, twice around: all shifts of one point are told in one go.
+        let sample = |line: &Self| -> [[f64; 2 * SAMPLES]; 3] {
             let center = line.center();
-            (0..SAMPLES).map(|k| line.eval(f64::from(k) / f64::from(SAMPLES)).0 - center).collect()
+            let mut rows = [[0.0; 2 * SAMPLES]; 3];
+            for k in 0..SAMPLES {
+                let arm = line.eval(k as f64 / SAMPLES as f64).0 - center;
+                for (row, value) in rows.iter_mut().zip(arm.to_array()) {
+                    (row[k], row[k + SAMPLES]) = (value, value);
+                }
+            }
+            rows
         };
-        let fixed = sample(other);
-        let mine = sample(self);
-        let cost = |shift: usize| -> f64 {
-            fixed.iter().enumerate().map(|(i, p)| p.distance_squared(mine[(i + shift) % mine.len()])).sum()
-        };
-        let costs: Vec<f64> = (0..mine.len()).map(cost).collect();
+        let ([a, b, c], [x, y, z]) = (sample(other), sample(self));
+        let mut costs = [0.0; SAMPLES];
+        for (chunk, costs) in costs.chunks_exact_mut(LANES).enumerate() {
+            let mut sums = [0.0; LANES];
+            for i in 0..SAMPLES {
+                let from = i + chunk * LANES;
+                let lane = |row: &[f64], at: f64| -> [f64; LANES] {
+                    std::array::from_fn(|k| (row[from + k] - at) * (row[from + k] - at))
+                };
+                let (x, y, z) = (lane(&x, a[i]), lane(&y, b[i]), lane(&z, c[i]));
+                sums = std::array::from_fn(|k| sums[k] + (x[k] + y[k] + z[k]));
+            }
+            costs.copy_from_slice(&sums);
+        }
         let mut best = 0;
         for (i, cost) in costs.iter().enumerate() {
             // A tie goes to the smaller shift, so that equal loops stay as they are.
@@ -161,108 +179,26 @@ impl ClosedLine {
         let shift = if bow > 0.0 { (0.5 * (before - after) / bow).clamp(-0.5, 0.5) } else { 0.0 };
         // Equal neighbors differ by rounding only: no shift then.
         let shift = if shift.abs() < 1e-9 { 0.0 } else { shift };
-        (best as f64 + shift) / f64::from(SAMPLES)
+        (best as f64 + shift) / SAMPLES as f64
     }
 }
 
-/// A periodic cubic spline over chord length, and its arc length at four places a span.
-struct Spline {
-    points: Vec<DVec3>,
-    slopes: Vec<DVec3>,
-    chords: Vec<f64>,
-    lengths: Vec<f64>,
+/// A place between two knots of a line: the first of them, and the share of the way to the next.
+#[derive(Clone, Copy)]
+struct Knot {
+    index: usize,
+    t: f64,
 }
 
-const PARTS: usize = 4;
-
-impl Spline {
-    fn new(points: &[DVec3]) -> Self {
-        let count = points.len();
-        let chords: Vec<f64> = (0..count).map(|i| points[i].distance(points[(i + 1) % count])).collect();
-        let secant = |i: usize| (points[(i + 1) % count] - points[i]) / chords[i];
-        // Row i: chord_i m_(i-1) + 2 (chord_(i-1) + chord_i) m_i + chord_(i-1) m_(i+1) = right hand side.
-        let before = |i: usize| (i + count - 1) % count;
-        let diagonal: Vec<f64> = (0..count).map(|i| 2.0 * (chords[before(i)] + chords[i])).collect();
-        let right: Vec<DVec3> = (0..count)
-            .map(|i| 3.0 * (chords[i] * secant(before(i)) + chords[before(i)] * secant(i)))
-            .collect();
-        let slopes =
-            cyclic(&chords, &diagonal, &(0..count).map(|i| chords[before(i)]).collect::<Vec<_>>(), &right);
-        let mut spline = Self { points: points.to_vec(), slopes, chords, lengths: vec![0.0] };
-        let mut total = 0.0;
-        for piece in 0..count * PARTS {
-            let from = (piece % PARTS) as f64 / PARTS as f64;
-            total += spline.length(piece / PARTS, from, from + 1.0 / PARTS as f64);
-            spline.lengths.push(total);
-        }
-        spline
+impl Knot {
+    #[inline]
+    fn at(v: f64, count: usize) -> Self {
+        // Truncation is cheaper than floor; v beyond the integers has no fraction to lose.
+        let fraction = v - (v as i64) as f64;
+        let scaled = (if fraction < 0.0 { fraction + 1.0 } else { fraction }) * count as f64;
+        let index = (scaled as usize).min(count - 1);
+        Self { index, t: scaled - index as f64 }
     }
-
-    /// Point and derivative by the span's parameter in [0, 1].
-    fn at(&self, span: usize, t: f64) -> (DVec3, DVec3) {
-        let next = (span + 1) % self.points.len();
-        let chord = self.chords[span];
-        let (a, da, db) = (self.points[span], self.slopes[span] * chord, self.slopes[next] * chord);
-        let rise = self.points[next] - a;
-        let (square, cube) = (3.0 * rise - 2.0 * da - db, da + db - 2.0 * rise);
-        (a + t * (da + t * (square + t * cube)), da + t * (2.0 * square + t * 3.0 * cube))
-    }
-
-    fn length(&self, span: usize, from: f64, to: f64) -> f64 {
-        super::bezier::integrate(from, to, |t| self.at(span, t).1.length())
-    }
-
-    /// Point and unit direction at an arc length that lies in the given piece.
-    fn at_length(&self, piece: usize, target: f64) -> (DVec3, DVec3) {
-        let (span, from) = (piece / PARTS, (piece % PARTS) as f64 / PARTS as f64);
-        let size = self.lengths[piece + 1] - self.lengths[piece];
-        let mut t = from + (target - self.lengths[piece]) / size.max(f64::MIN_POSITIVE) / PARTS as f64;
-        for _ in 0..2 {
-            let miss = self.lengths[piece] + self.length(span, from, t) - target;
-            let speed = self.at(span, t).1.length();
-            if speed > 0.0 {
-                t = (t - miss / speed).clamp(from, from + 1.0 / PARTS as f64);
-            }
-        }
-        let (point, slope) = self.at(span, t);
-        (point, slope.normalize_or_zero())
-    }
-}
-
-/// Solves a cyclic tridiagonal system (diagonally dominant) by the Sherman-Morrison formula.
-fn cyclic(lower: &[f64], diagonal: &[f64], upper: &[f64], right: &[DVec3]) -> Vec<DVec3> {
-    let count = diagonal.len();
-    let gamma = -diagonal[0];
-    let corner_low = upper[count - 1];
-    let corner_high = lower[0];
-    let mut changed = diagonal.to_vec();
-    changed[0] -= gamma;
-    changed[count - 1] -= corner_low * corner_high / gamma;
-    let mut ratio = vec![0.0; count];
-    let mut first = vec![DVec3::ZERO; count];
-    let mut second = vec![0.0; count];
-    for i in 0..count {
-        let unit = match i {
-            0 => gamma,
-            _ if i + 1 == count => corner_low,
-            _ => 0.0,
-        };
-        let (low, last, last_unit, last_ratio) = match i.checked_sub(1) {
-            Some(j) => (lower[i], first[j], second[j], ratio[j]),
-            None => (0.0, DVec3::ZERO, 0.0, 0.0),
-        };
-        let pivot = changed[i] - low * last_ratio;
-        ratio[i] = upper[i] / pivot;
-        first[i] = (right[i] - low * last) / pivot;
-        second[i] = (unit - low * last_unit) / pivot;
-    }
-    for i in (0..count - 1).rev() {
-        first[i] = first[i] - ratio[i] * first[i + 1];
-        second[i] -= ratio[i] * second[i + 1];
-    }
-    let weight = corner_high / gamma;
-    let factor = (first[0] + weight * first[count - 1]) / (1.0 + second[0] + weight * second[count - 1]);
-    first.iter().zip(&second).map(|(a, b)| *a - factor * *b).collect()
 }
 
 /// A stack of loops along a curve.
@@ -341,39 +277,83 @@ impl LoopStack {
         Ok(Self { places, lines, smooth })
     }
 
+    /// The line at a place along the curve.
     #[inline]
-    pub(super) fn eval(&self, w: f64, v: f64) -> Jet {
+    pub(super) fn at(&self, w: f64) -> Cut<'_> {
         let after = self.places.partition_point(|&at| at <= w);
         let before = after.max(1) - 1;
         let after = after.min(self.places.len() - 1);
-        let (a, av) = self.lines[before].eval(v);
-        let line = if before == after {
-            Jet { point: a, du: DVec3::ZERO, dv: av }
-        } else {
-            let (b, bv) = self.lines[after].eval(v);
+        let between = (before != after).then(|| {
             let inverse = 1.0 / (self.places[after] - self.places[before]);
-            let t = (w - self.places[before]) * inverse;
-            match &self.smooth {
-                None => Jet { point: a + (b - a) * t, du: (b - a) * inverse, dv: av + (bv - av) * t },
-                Some(smooth) => {
-                    let (ma, mav) = smooth.slopes[before].eval(v);
-                    let (mb, mbv) = smooth.slopes[after].eval(v);
-                    let width = 1.0 / inverse;
-                    let (s, s2, s3) = (t, t * t, t * t * t);
-                    let blend = [s - 2.0 * s2 + s3, 3.0 * s2 - 2.0 * s3, s3 - s2];
-                    let mix = |a: DVec3, ma: DVec3, b: DVec3, mb: DVec3| {
-                        a + (b - a) * blend[1] + (ma * blend[0] + mb * blend[2]) * width
-                    };
-                    let slope = (b - a) * ((6.0 * s - 6.0 * s2) * inverse)
-                        + ma * (1.0 - 4.0 * s + 3.0 * s2)
-                        + mb * (3.0 * s2 - 2.0 * s);
-                    Jet { point: mix(a, ma, b, mb), du: slope, dv: mix(av, mav, bv, mbv) }
+            let slopes = self.smooth.as_ref().map(|smooth| [&smooth.slopes[before], &smooth.slopes[after]]);
+            Between { next: &self.lines[after], slopes, t: (w - self.places[before]) * inverse, inverse }
+        });
+        Cut { line: &self.lines[before], between, frame: self.smooth.as_ref().map(|smooth| smooth.frame(w)) }
+    }
+}
+
+/// One line of a stack.
+pub(super) struct Cut<'s> {
+    line: &'s ClosedLine,
+    between: Option<Between<'s>>,
+    frame: Option<Frame>,
+}
+
+/// The way from a section's line to the next one.
+struct Between<'s> {
+    next: &'s ClosedLine,
+    /// How the lines change at both, where the way is smooth.
+    slopes: Option<[&'s ClosedLine; 2]>,
+    /// Share of the way, and one by its length.
+    t: f64,
+    inverse: f64,
+}
+
+/// Center and size of a line, and how they change.
+struct Frame {
+    center: [DVec3; 2],
+    size: f64,
+    growth: f64,
+}
+
+impl Cut<'_> {
+    /// Point and derivatives, `du` by the curve parameter.
+    #[inline]
+    pub(super) fn eval(&self, v: f64) -> Jet {
+        // All lines of a stack have as many knots.
+        let knot = Knot::at(v, self.line.knots.len());
+        let (a, av) = self.line.eval_at(knot);
+        let line = match &self.between {
+            None => Jet { point: a, du: DVec3::ZERO, dv: av },
+            Some(Between { next, slopes, t, inverse }) => {
+                let (t, inverse) = (*t, *inverse);
+                let (b, bv) = next.eval_at(knot);
+                match slopes {
+                    None => Jet { point: a + (b - a) * t, du: (b - a) * inverse, dv: av + (bv - av) * t },
+                    Some([before, after]) => {
+                        let (ma, mav) = before.eval_at(knot);
+                        let (mb, mbv) = after.eval_at(knot);
+                        let width = 1.0 / inverse;
+                        let (s, s2, s3) = (t, t * t, t * t * t);
+                        let blend = [s - 2.0 * s2 + s3, 3.0 * s2 - 2.0 * s3, s3 - s2];
+                        let mix = |a: DVec3, ma: DVec3, b: DVec3, mb: DVec3| {
+                            a + (b - a) * blend[1] + (ma * blend[0] + mb * blend[2]) * width
+                        };
+                        let slope = (b - a) * ((6.0 * s - 6.0 * s2) * inverse)
+                            + ma * (1.0 - 4.0 * s + 3.0 * s2)
+                            + mb * (3.0 * s2 - 2.0 * s);
+                        Jet { point: mix(a, ma, b, mb), du: slope, dv: mix(av, mav, bv, mbv) }
+                    }
                 }
             }
         };
-        match &self.smooth {
+        match &self.frame {
             None => line,
-            Some(smooth) => smooth.place(w, &line),
+            Some(Frame { center: [center, drift], size, growth }) => Jet {
+                point: *center + line.point * *size,
+                du: *drift + line.point * *growth + line.du * *size,
+                dv: line.dv * *size,
+            },
         }
     }
 }
@@ -406,11 +386,15 @@ impl Smooth {
         let numbers = (0..size.len()).map(|i| [x[i], y[i], z[i], size[i]]).collect();
         let count = lines[0].knots.len();
         let mut samples = vec![vec![DVec3::ZERO; count]; lines.len()];
+        let mut slopes = smooth::Slopes::new(places);
+        let mut values = vec![0.0; lines.len()];
         for knot in 0..count {
             for axis in 0..3 {
-                let values: Vec<f64> = lines.iter().map(|line| line.knots[knot][0][axis]).collect();
-                for (row, slope) in samples.iter_mut().zip(smooth::slopes(places, &values, false)) {
-                    row[knot][axis] = slope;
+                for (value, line) in values.iter_mut().zip(lines.iter()) {
+                    *value = line.knots[knot][0][axis];
+                }
+                for (row, slope) in samples.iter_mut().zip(slopes.through(&values, false)) {
+                    row[knot][axis] = *slope;
                 }
             }
         }
@@ -423,7 +407,8 @@ impl Smooth {
         Self { slopes: samples.iter().map(|row| ClosedLine::from_samples(row)).collect(), numbers }
     }
 
-    fn place(&self, w: f64, line: &Jet) -> Jet {
+    #[inline]
+    fn frame(&self, w: f64) -> Frame {
         let index = self.numbers.partition_point(|n| n[0].start <= w).max(1) - 1;
         let numbers = &self.numbers[index];
         let t = (w - numbers[0].start) * numbers[0].inverse;
@@ -437,11 +422,8 @@ impl Smooth {
         };
         let size = value(3).max(1e-30).sqrt();
         let growth = 0.5 * slope(3) / size;
-        Jet {
-            point: DVec3::new(value(0), value(1), value(2)) + line.point * size,
-            du: DVec3::new(slope(0), slope(1), slope(2)) + line.point * growth + line.du * size,
-            dv: line.dv * size,
-        }
+        let vector = |[x, y, z]: [f64; 3]| DVec3::new(x, y, z);
+        Frame { center: [vector([0, 1, 2].map(value)), vector([0, 1, 2].map(slope))], size, growth }
     }
 }
 

@@ -18,6 +18,7 @@ pub(crate) mod ring;
 mod smooth;
 pub(crate) mod solid;
 pub mod spec;
+mod spline;
 pub(crate) mod split;
 pub(crate) mod stack;
 pub mod sweep;

@@ -1,6 +1,6 @@
 //! Profiles along a curve: the closed line around it at any parameter, interpolated between sections.
 
-use super::loops::LoopStack;
+use super::loops::{Cut, LoopStack};
 use super::smooth;
 use super::spec::{Fault, Interpolation, Profile, TubeSpec};
 use super::{End, Jet};
@@ -166,7 +166,8 @@ impl Stack {
                 0.5 * (a * a + b * b) + x * x + y * y
             }
             Kind::Loops(stack) => {
-                (0..4).map(|k| stack.eval(w, f64::from(k) / 4.0).du.length_squared()).sum::<f64>() / 4.0
+                let cut = stack.at(w);
+                (0..4).map(|k| cut.eval(f64::from(k) / 4.0).du.length_squared()).sum::<f64>() / 4.0
             }
         }
     }
@@ -180,9 +181,12 @@ impl Stack {
                 let offset = DVec2::new(span.number(2, w, false).0, span.number(3, w, false).0);
                 offset.dot(toward) + (toward * DVec2::new(a, b)).length()
             }
-            Kind::Loops(stack) => (0..64)
-                .map(|k| stack.eval(w, f64::from(k) / 64.0).point.truncate().dot(toward))
-                .fold(f64::NEG_INFINITY, f64::max),
+            Kind::Loops(stack) => {
+                let cut = stack.at(w);
+                (0..64)
+                    .map(|k| cut.eval(f64::from(k) / 64.0).point.truncate().dot(toward))
+                    .fold(f64::NEG_INFINITY, f64::max)
+            }
         }
     }
 
@@ -197,7 +201,7 @@ impl Stack {
     pub(super) fn at(&self, w: f64) -> Line<'_> {
         let (spans, squared) = match &self.kind {
             Kind::Ellipses { spans, squared } => (spans, *squared),
-            Kind::Loops(stack) => return Line::Loop { stack, w },
+            Kind::Loops(stack) => return Line::Loop(stack.at(w)),
         };
         let span = span_at(spans, w);
         Line::Ellipse([
@@ -213,10 +217,7 @@ impl Stack {
 pub(super) enum Line<'s> {
     /// Two radii and two offsets with their slopes.
     Ellipse([(f64, f64); 4]),
-    Loop {
-        stack: &'s LoopStack,
-        w: f64,
-    },
+    Loop(Cut<'s>),
 }
 
 impl Line<'_> {
@@ -232,7 +233,7 @@ impl Line<'_> {
                     dv: DVec3::new(TAU * a * sin, -TAU * b * cos, 0.0),
                 }
             }
-            Self::Loop { stack, w } => stack.eval(*w, v),
+            Self::Loop(cut) => cut.eval(v),
         }
     }
 
@@ -244,7 +245,7 @@ impl Line<'_> {
                 let (sin, cos) = sin_cos_turns(-v);
                 DVec3::new(x + a * cos, y + b * sin, 0.0)
             }
-            Self::Loop { stack, w } => stack.eval(*w, v).point,
+            Self::Loop(cut) => cut.eval(v).point,
         }
     }
 }

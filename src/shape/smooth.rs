@@ -11,7 +11,10 @@ pub(super) struct Cubic {
 /// Cubics over [0, 1] through the values at the places (ascending, at least one), constant before the first and
 /// after the last: straight, or smooth. A `positive` quantity is kept well above zero between positive values.
 pub(super) fn cubics(places: &[f64], values: &[f64], smooth: bool, positive: bool) -> Vec<Cubic> {
-    let mut slopes = if smooth { slopes(places, values, positive) } else { vec![0.0; places.len()] };
+    let mut slopes = vec![0.0; places.len()];
+    if smooth {
+        slopes = Slopes::new(places).through(values, positive).to_vec();
+    }
     let (Some(&first), Some(&last)) = (places.first(), places.last()) else { return Vec::new() };
     let (low, high) = (values[0], values[values.len() - 1]);
     if first > 0.0 {
@@ -52,62 +55,86 @@ fn hermite(from: f64, rise: f64, start: f64, end: f64) -> [f64; 4] {
     [from, start, 3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise]
 }
 
-/// Slopes at the places; a `positive` quantity is the square of a size. By the limiter M3-A of Huynh (1993): third order even at a smooth extremum, so that a
-/// parabola is kept exactly, and monotone where the values are.
-pub(super) fn slopes(places: &[f64], values: &[f64], positive: bool) -> Vec<f64> {
-    let count = places.len().min(values.len());
-    if count < 2 {
-        return vec![0.0; count];
+/// Slopes of smooth curves through values at given places, ascending.
+///
+/// By the limiter M3-A of Huynh (1993): third order even at a smooth extremum, so that a parabola is kept exactly, and monotone
+/// where the values are.
+#[derive(Debug)]
+pub(super) struct Slopes<'p> {
+    places: &'p [f64],
+    /// Of the values last seen: first divided differences, second ones around each place, and slopes.
+    secants: Vec<f64>,
+    seconds: Vec<f64>,
+    slopes: Vec<f64>,
+}
+
+impl<'p> Slopes<'p> {
+    pub(super) fn new(places: &'p [f64]) -> Self {
+        Self { places, secants: Vec::new(), seconds: Vec::new(), slopes: Vec::new() }
     }
-    let secant = |i: usize| (values[i + 1] - values[i]) / (places[i + 1] - places[i]);
-    if count == 2 {
-        // The square of a straight line, where it is a square and not of a point.
-        if positive && values[0] > 0.0 && values[1] > 0.0 {
-            let roots = [values[0].sqrt(), values[1].sqrt()];
-            let slope = 2.0 * (roots[1] - roots[0]) / (places[1] - places[0]);
-            return roots.map(|root| root * slope).to_vec();
+
+    /// The slopes at the places, as many as there are values; a `positive` quantity is the square of a size.
+    pub(super) fn through(&mut self, values: &[f64], positive: bool) -> &[f64] {
+        let Self { places, secants, seconds, slopes } = self;
+        let count = places.len().min(values.len());
+        slopes.clear();
+        slopes.resize(count, 0.0);
+        if count < 2 {
+            return slopes;
         }
-        return vec![secant(0); 2];
-    }
-    // Second divided difference around place i; beyond the ends the nearest one.
-    let second = |i: usize| {
-        let i = i.clamp(1, count - 2);
-        (secant(i) - secant(i - 1)) / (places[i + 1] - places[i - 1])
-    };
-    let between = |i: usize| minmod(second(i), second(i + 1));
-    let mut slopes = vec![0.0; count];
-    for i in 1..count - 1 {
-        let left = secant(i - 1) + between(i - 1) * (places[i] - places[i - 1]);
-        let right = secant(i) + between(i) * (places[i] - places[i + 1]);
-        let limit = 3.0 * minmod(secant(i - 1), secant(i)).abs();
-        let wide = minmod(left, right);
-        let size = (0.5 * (left + right)).abs().min(limit.max(1.5 * wide.abs()));
-        slopes[i] = if wide == 0.0 { 0.0 } else { size.copysign(wide) };
-        // Nothing beyond the outermost values says that they belong to a smooth extremum.
-        if i == 1 {
-            slopes[i] = minmod(slopes[i], 3.0 * secant(0));
+        secants.clear();
+        secants.extend((1..count).map(|i| (values[i] - values[i - 1]) / (places[i] - places[i - 1])));
+        if count == 2 {
+            slopes.fill(secants[0]);
+            // The square of a straight line, where it is a square and not of a point.
+            if positive && values[0] > 0.0 && values[1] > 0.0 {
+                let roots = [values[0].sqrt(), values[1].sqrt()];
+                let slope = 2.0 * (roots[1] - roots[0]) / (places[1] - places[0]);
+                slopes.copy_from_slice(&roots.map(|root| root * slope));
+            }
+            return slopes;
         }
-        if i == count - 2 {
-            slopes[i] = minmod(slopes[i], 3.0 * secant(i));
-        }
-    }
-    let end = |secant: f64, slope: f64| minmod(slope, 3.0 * secant);
-    slopes[0] = end(secant(0), secant(0) - second(1) * (places[1] - places[0]));
-    let last = secant(count - 2);
-    slopes[count - 1] = end(last, last + second(count - 2) * (places[count - 1] - places[count - 2]));
-    if positive {
-        for i in 0..count - 1 {
-            let (width, floor) = (places[i + 1] - places[i], 0.5 * values[i].min(values[i + 1]));
-            let [a, b, c, d] =
-                hermite(values[i], values[i + 1] - values[i], slopes[i] * width, slopes[i + 1] * width);
-            let low = (1..32).map(|k| f64::from(k) / 32.0).any(|t| a + t * (b + t * (c + t * d)) < floor);
-            if low {
-                slopes[i] = minmod(slopes[i], 3.0 * secant(i));
-                slopes[i + 1] = minmod(slopes[i + 1], 3.0 * secant(i));
+        // Beyond the ends the nearest one.
+        let second = |i: usize| {
+            let i = i.clamp(1, count - 2);
+            (secants[i] - secants[i - 1]) / (places[i + 1] - places[i - 1])
+        };
+        seconds.clear();
+        seconds.extend((0..count).map(second));
+        let between = |i: usize| minmod(seconds[i], seconds[i + 1]);
+        for i in 1..count - 1 {
+            let left = secants[i - 1] + between(i - 1) * (places[i] - places[i - 1]);
+            let right = secants[i] + between(i) * (places[i] - places[i + 1]);
+            let limit = 3.0 * minmod(secants[i - 1], secants[i]).abs();
+            let wide = minmod(left, right);
+            let size = (0.5 * (left + right)).abs().min(limit.max(1.5 * wide.abs()));
+            slopes[i] = if wide == 0.0 { 0.0 } else { size.copysign(wide) };
+            // Nothing beyond the outermost values says that they belong to a smooth extremum.
+            if i == 1 {
+                slopes[i] = minmod(slopes[i], 3.0 * secants[0]);
+            }
+            if i == count - 2 {
+                slopes[i] = minmod(slopes[i], 3.0 * secants[i]);
             }
         }
+        let end = |secant: f64, slope: f64| minmod(slope, 3.0 * secant);
+        slopes[0] = end(secants[0], secants[0] - seconds[1] * (places[1] - places[0]));
+        let last = secants[count - 2];
+        slopes[count - 1] = end(last, last + seconds[count - 2] * (places[count - 1] - places[count - 2]));
+        if positive {
+            for i in 0..count - 1 {
+                let (width, floor) = (places[i + 1] - places[i], 0.5 * values[i].min(values[i + 1]));
+                let [a, b, c, d] =
+                    hermite(values[i], values[i + 1] - values[i], slopes[i] * width, slopes[i + 1] * width);
+                let low = (1..32).map(|k| f64::from(k) / 32.0).any(|t| a + t * (b + t * (c + t * d)) < floor);
+                if low {
+                    slopes[i] = minmod(slopes[i], 3.0 * secants[i]);
+                    slopes[i + 1] = minmod(slopes[i + 1], 3.0 * secants[i]);
+                }
+            }
+        }
+        slopes
     }
-    slopes
 }
 
 /// The smaller of two numbers of one sign, otherwise 0.

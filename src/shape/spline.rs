@@ -1,0 +1,108 @@
+//! The smooth closed curve through points, and places on it by arc length.
+
+use glam::DVec3;
+
+/// A periodic cubic spline over chord length, and its arc length at four places a span.
+pub(super) struct Spline {
+    /// Coefficients of the powers of each span's parameter in [0, 1].
+    spans: Vec<[DVec3; 4]>,
+    /// Arc length up to each piece, and the whole.
+    pub(super) lengths: Vec<f64>,
+}
+
+const PARTS: usize = 4;
+
+impl Spline {
+    /// Through three points or more, no two neighbors of them alike.
+    pub(super) fn new(points: &[DVec3]) -> Self {
+        let count = points.len();
+        let chords: Vec<f64> = (0..count).map(|i| points[i].distance(points[(i + 1) % count])).collect();
+        let secant = |i: usize| (points[(i + 1) % count] - points[i]) / chords[i];
+        // Row i: chord_i m_(i-1) + 2 (chord_(i-1) + chord_i) m_i + chord_(i-1) m_(i+1) = right hand side.
+        let before = |i: usize| (i + count - 1) % count;
+        let diagonal: Vec<f64> = (0..count).map(|i| 2.0 * (chords[before(i)] + chords[i])).collect();
+        let right: Vec<DVec3> = (0..count)
+            .map(|i| 3.0 * (chords[i] * secant(before(i)) + chords[before(i)] * secant(i)))
+            .collect();
+        let slopes =
+            cyclic(&chords, &diagonal, &(0..count).map(|i| chords[before(i)]).collect::<Vec<_>>(), &right);
+        let cubic = |i: usize| {
+            let next = (i + 1) % count;
+            let (a, da, db) = (points[i], slopes[i] * chords[i], slopes[next] * chords[i]);
+            let rise = points[next] - a;
+            [a, da, 3.0 * rise - 2.0 * da - db, da + db - 2.0 * rise]
+        };
+        let mut spline = Self { spans: (0..count).map(cubic).collect(), lengths: Vec::new() };
+        spline.lengths.reserve(count * PARTS + 1);
+        spline.lengths.push(0.0);
+        let mut total = 0.0;
+        for piece in 0..count * PARTS {
+            let from = (piece % PARTS) as f64 / PARTS as f64;
+            total += spline.length(piece / PARTS, from, from + 1.0 / PARTS as f64);
+            spline.lengths.push(total);
+        }
+        spline
+    }
+
+    /// Derivative by the span's parameter.
+    fn slope(&self, span: usize, t: f64) -> DVec3 {
+        let [_, line, square, cube] = self.spans[span];
+        line + t * (2.0 * square + t * 3.0 * cube)
+    }
+
+    fn length(&self, span: usize, from: f64, to: f64) -> f64 {
+        super::bezier::integrate(from, to, |t| self.slope(span, t).length())
+    }
+
+    /// Point and unit direction at an arc length that lies in the given piece.
+    pub(super) fn at_length(&self, piece: usize, target: f64) -> (DVec3, DVec3) {
+        let (span, from) = (piece / PARTS, (piece % PARTS) as f64 / PARTS as f64);
+        let size = self.lengths[piece + 1] - self.lengths[piece];
+        let mut t = from + (target - self.lengths[piece]) / size.max(f64::MIN_POSITIVE) / PARTS as f64;
+        for _ in 0..2 {
+            let miss = self.lengths[piece] + self.length(span, from, t) - target;
+            let speed = self.slope(span, t).length();
+            if speed > 0.0 {
+                t = (t - miss / speed).clamp(from, from + 1.0 / PARTS as f64);
+            }
+        }
+        let [start, line, square, cube] = self.spans[span];
+        (start + t * (line + t * (square + t * cube)), self.slope(span, t).normalize_or_zero())
+    }
+}
+
+/// Solves a cyclic tridiagonal system (diagonally dominant) by the Sherman-Morrison formula.
+fn cyclic(lower: &[f64], diagonal: &[f64], upper: &[f64], right: &[DVec3]) -> Vec<DVec3> {
+    let count = diagonal.len();
+    let gamma = -diagonal[0];
+    let corner_low = upper[count - 1];
+    let corner_high = lower[0];
+    let mut changed = diagonal.to_vec();
+    changed[0] -= gamma;
+    changed[count - 1] -= corner_low * corner_high / gamma;
+    let mut ratio = vec![0.0; count];
+    let mut first = vec![DVec3::ZERO; count];
+    let mut second = vec![0.0; count];
+    for i in 0..count {
+        let unit = match i {
+            0 => gamma,
+            _ if i + 1 == count => corner_low,
+            _ => 0.0,
+        };
+        let (low, last, last_unit, last_ratio) = match i.checked_sub(1) {
+            Some(j) => (lower[i], first[j], second[j], ratio[j]),
+            None => (0.0, DVec3::ZERO, 0.0, 0.0),
+        };
+        let pivot = changed[i] - low * last_ratio;
+        ratio[i] = upper[i] / pivot;
+        first[i] = (right[i] - low * last) / pivot;
+        second[i] = (unit - low * last_unit) / pivot;
+    }
+    for i in (0..count - 1).rev() {
+        first[i] = first[i] - ratio[i] * first[i + 1];
+        second[i] -= ratio[i] * second[i + 1];
+    }
+    let weight = corner_high / gamma;
+    let factor = (first[0] + weight * first[count - 1]) / (1.0 + second[0] + weight * second[count - 1]);
+    first.iter().zip(&second).map(|(a, b)| *a - factor * *b).collect()
+}
