@@ -1,10 +1,12 @@
 //! Whole compiles, from the text of a shape to the text of a pattern: the paper's shapes at its stitch sizes, and ever
-//! finer stitches on one shape to show that the cost of a stitch stays the same.
+//! finer stitches on one shape to show that the cost of a stitch stays the same; and the generator alone, in a hurry and
+//! without settling.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use picot::backends::target;
 use picot::diag::{Sink, Sources};
-use picot::frontend::reader;
+use picot::frontend::{Input, reader};
+use picot::generate::Preset;
 use picot::ir::Gauge;
 use picot::ir::verify::verify;
 use std::hint::black_box;
@@ -48,7 +50,7 @@ fn paper(criterion: &mut Criterion) {
 fn scale(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("scale");
     group.sample_size(10);
-    for size in [2.5, 1.0, 0.5, 0.25] {
+    for size in [2.4, 0.78, 0.247, 0.0782] {
         let (_, text) = SHAPES[3];
         group.throughput(Throughput::Elements(compile(text, size)));
         group.bench_with_input(BenchmarkId::new("d", size), &size, |bencher, size| {
@@ -58,5 +60,34 @@ fn scale(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, paper, scale);
+fn generator(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("generator");
+    for (name, text) in &SHAPES[2..] {
+        let loader = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+        let mut sources = Sources::new(&loader);
+        let mut sink = Sink::new();
+        let mut options = picot::Options { gauge: Some(Gauge::new(1.5, 1.5)), ..picot::Options::default() };
+        let source = sources.add("shape", text.as_bytes().to_vec()).expect("small");
+        let reader = reader("shape").expect("listed");
+        let input = picot::read(&source, reader, &options, &mut sources, &mut sink);
+        let Some(Input::Shape(shape)) = input else { panic!("a shape") };
+        for way in ["std", "fast", "not settled"] {
+            options.generate = picot::generate::Options::default();
+            match way {
+                "fast" => options.generate.preset = Preset::Fast,
+                "not settled" => (options.generate.sweeps, options.generate.window_sweeps) = (0, 0),
+                _ => {}
+            }
+            let stitches = |program: &picot::ir::Program| program.graphs[0].nodes.len() as u64;
+            let once = picot::program(&shape, &options, &mut sink).expect("generates");
+            group.throughput(Throughput::Elements(stitches(&once)));
+            group.bench_with_input(BenchmarkId::new(*name, way), &options, |bencher, options| {
+                bencher.iter(|| black_box(picot::program(&shape, options, &mut Sink::new())));
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, paper, scale, generator);
 criterion_main!(benches);

@@ -127,7 +127,7 @@ impl Options {
             Preset::Std => self.clone(),
             Preset::Fast => Self {
                 window: self.window.min(2),
-                window_sweeps: self.window_sweeps.min(1),
+                window_sweeps: self.window_sweeps.min(2),
                 sweeps: self.sweeps.min(5),
                 ..self.clone()
             },

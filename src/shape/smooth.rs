@@ -65,17 +65,17 @@ pub(super) struct Slopes<'p> {
     /// Of the values last seen: first divided differences, second ones around each place, and slopes.
     secants: Vec<f64>,
     seconds: Vec<f64>,
-    slopes: Vec<f64>,
+    result: Vec<f64>,
 }
 
 impl<'p> Slopes<'p> {
     pub(super) fn new(places: &'p [f64]) -> Self {
-        Self { places, secants: Vec::new(), seconds: Vec::new(), slopes: Vec::new() }
+        Self { places, secants: Vec::new(), seconds: Vec::new(), result: Vec::new() }
     }
 
     /// The slopes at the places, as many as there are values; a `positive` quantity is the square of a size.
     pub(super) fn through(&mut self, values: &[f64], positive: bool) -> &[f64] {
-        let Self { places, secants, seconds, slopes } = self;
+        let Self { places, secants, seconds, result: slopes } = self;
         let count = places.len().min(values.len());
         slopes.clear();
         slopes.resize(count, 0.0);
