@@ -22,8 +22,10 @@ const PATIENCE: f64 = 0.0005;
 const BAD: f64 = 4.0;
 /// A try whose score is so much worse than the best before its rows have settled is given up.
 const BAR: f64 = 0.1;
-/// Further tries for parts on which all are poor, or have inverted tiles.
+/// Further tries for parts on which all are poor, or have inverted tiles, and for very large ones that have these: there tiles
+/// that are pushed open after each row push others over.
 const RESCUES: usize = 8;
+const FEW_RESCUES: usize = 4;
 /// How many times worse even rounds may be than what has inverted tiles, and be kept instead.
 const TANGLED: f64 = 2.0;
 /// Tries after the first are made side by side, so many at a time whatever the number of threads.
@@ -172,7 +174,9 @@ pub(super) fn best(
     even: impl Fn(&Sink<'_>) -> Option<Laid>,
 ) -> Option<Laid> {
     let tries = if part.expected > MOST_STITCHES { 1 } else { options.tries as usize };
-    let most = if options.tries > 1 && part.expected <= MOST_RESCUED { tries + RESCUES } else { tries };
+    let huge = part.expected > MOST_RESCUED;
+    let rescues = if huge { FEW_RESCUES } else { RESCUES };
+    let most = if options.tries > 1 { tries + rescues } else { tries };
     let first = Judge { bar: f64::INFINITY, level: true, stacks: false, opens: false, tail: true };
     if options.preset == Preset::Fast {
         return lay(&options.hurried(), 0.0, first, sink);
@@ -188,8 +192,9 @@ pub(super) fn best(
     let mut next = 0;
     // Once more around where tiles are inverted, with increases free to stand on others where they were not.
     let last = if tries > 1 { most + CHANGES.len() } else { most };
-    let done =
-        |best: &Made, next: usize| part.is_done(best, next, tries) || next >= most && best.0.inverted == 0;
+    let done = |best: &Made, next: usize| {
+        part.is_done(best, next, tries) || (huge || next >= most) && best.0.inverted == 0
+    };
     while next < last && !best.as_ref().is_some_and(|best| done(best, next)) {
         let bad = is_bad(&best);
         let bar = match &best {
@@ -197,16 +202,16 @@ pub(super) fn best(
             _ => f64::INFINITY,
         };
         let make = |index: usize, sink: &Sink<'_>| {
-            let rescue = index >= tries && bad;
+            let rescue = index >= tries && bad && !huge;
             let (options, turn) = part.variant(options, index, rescue);
             let stacks = rescue && (index + index / CHANGES.len()) % 2 == 1;
-            let opens = index > 0 && (bad || !part.harsh);
+            let opens = index > 0 && (bad || !part.harsh) && !huge;
             let judge = Judge { bar, level: !rescue, stacks, opens, tail: !part.harsh || rescue };
             lay(&options, turn, judge, sink).map(scored)
         };
         let made: Vec<Option<Made>> = match next {
             0 => vec![make(0, sink)],
-            _ => (next..last.min(next + BESIDE))
+            _ => (next..last.min(next + if huge { 1 } else { BESIDE }))
                 .into_par_iter()
                 .map(|index| make(index, &Sink::new()))
                 .collect(),

@@ -41,9 +41,13 @@ const PASS_RIDGE: f64 = 0.6;
 const FEWER_ENDS: f64 = 1.0;
 /// Fewest loops of a batch that short rows may lie on.
 const LEAST_RING: usize = 9;
-/// Sweeps in which inverted tiles of a hurried try shall open, and how many times these.
+/// Sweeps in which inverted tiles of a hurried try or a large part shall open, and how many times these.
 const OPENING_SWEEPS: u32 = 14;
-const OPENINGS: u32 = 3;
+const OPENINGS: u32 = 4;
+/// Those of the first time on a large part: most often they are enough.
+const FEW_SWEEPS: u32 = 5;
+/// Parts of so many stitches have few tries.
+const MANY: usize = 50_000;
 /// Sweeps over the whole after which a try is judged.
 const FIRST_SWEEPS: u32 = 4;
 /// Most short rows over each other in one round.
@@ -182,14 +186,22 @@ impl<'s> Weaver<'s> {
         if self.options.sweeps == 0 {
             return Outcome::Done;
         }
+        // Tries at a large part are dear: it settles longer instead.
+        if self.sheet.len() > MANY {
+            self.open(FEW_SWEEPS, judge.level);
+        }
         self.settle_top();
-        let opened = (0..=OPENINGS).any(|k| {
+        if self.quick() && !self.open(OPENING_SWEEPS, judge.level) { Outcome::Outdone } else { Outcome::Done }
+    }
+
+    /// Settles longer while there are inverted tiles, by so many sweeps first; false when some stay.
+    fn open(&mut self, sweeps: u32, level: bool) -> bool {
+        (0..=OPENINGS).any(|k| {
             if k > 0 {
-                self.settle_all(OPENING_SWEEPS, judge.level);
+                self.settle_all(if k == 1 { sweeps } else { OPENING_SWEEPS }, level);
             }
-            !self.quick() || !any_inverted(&self.sheet)
-        });
-        if opened { Outcome::Done } else { Outcome::Outdone }
+            !any_inverted(&self.sheet)
+        })
     }
 
     /// Rows between the highest and the lowest open loop, each against its place on the helix.
