@@ -4,18 +4,19 @@
 //! The state is the ring: the open loops in working order. A batch works some or all of them once. What was decided in
 //! earlier rows is settled again within the window, so that gaps and missing heights are true when they are decided.
 
+mod settle;
+
 use super::batch;
 use super::marker::Marker;
 use super::options::{Options, Preset};
-use super::relax::{Brink, Effort, Ends, Firm, Mark, Relaxer};
+use super::relax::{Mark, Relaxer};
 use super::rows::{Rows, row_speed};
-use super::score::{Score, any_inverted};
 use super::sheet::{Edge, EdgeKind, Foot, Quad, Shaped, Sheet, ShortRow, TileKind, Work};
 use super::short_rows::{GAP, Planner, Rules, Stretch};
 use super::stacked::Stacked;
 use super::staircase::{Shaping, Staircase, Taste};
 use super::stout::LEAST_LOOPS;
-use super::top::{self, Top};
+use super::top;
 use super::tries::Judge;
 use crate::ir::{NodeId, Stitch};
 use crate::shape::ParametricSurface;
@@ -29,8 +30,6 @@ const LEVELING: f64 = 0.858;
 const LEVELING_MOST: f64 = 0.313;
 /// Added to missing heights before short rows are planned: it is better to be a little early.
 const EAGER: f64 = 0.328;
-/// Weight of square tiles while rows settle.
-const WINDOW_SQUARENESS: f64 = 0.675;
 /// Share of the usual price of short-row ends in the last two rows, so that the top comes out level.
 const LAST_ROWS_PRICE: f64 = 0.4;
 /// Stitches more that a pass of a short row may be off before it is shaped, with full ease.
@@ -41,15 +40,6 @@ const PASS_RIDGE: f64 = 0.6;
 const FEWER_ENDS: f64 = 1.0;
 /// Fewest loops of a batch that short rows may lie on.
 const LEAST_RING: usize = 9;
-/// Sweeps in which inverted tiles of a hurried try or a large part shall open, and how many times these.
-const OPENING_SWEEPS: u32 = 14;
-const OPENINGS: u32 = 4;
-/// Those of the first time on a large part: most often they are enough.
-const FEW_SWEEPS: u32 = 5;
-/// Parts of so many stitches have few tries.
-const MANY: usize = 50_000;
-/// Sweeps over the whole after which a try is judged.
-const FIRST_SWEEPS: u32 = 4;
 /// Most short rows over each other in one round.
 const MOST_NESTED: u32 = 6;
 
@@ -174,34 +164,7 @@ impl<'s> Weaver<'s> {
             }
         }
         self.sheet.close();
-        let first = if judge.bar < f64::INFINITY { self.options.sweeps.min(FIRST_SWEEPS) } else { 0 };
-        if first > 0 {
-            self.settle_all(first, judge.level);
-            let score = Score::of(&self.sheet, self.options.ease());
-            if score.total > judge.bar {
-                return Outcome::Outdone;
-            }
-        }
-        self.settle_all(self.options.sweeps - first, judge.level);
-        if self.options.sweeps == 0 {
-            return Outcome::Done;
-        }
-        // Tries at a large part are dear: it settles longer instead.
-        if self.sheet.len() > MANY {
-            self.open(FEW_SWEEPS, judge.level);
-        }
-        self.settle_top();
-        if self.quick() && !self.open(OPENING_SWEEPS, judge.level) { Outcome::Outdone } else { Outcome::Done }
-    }
-
-    /// Settles longer while there are inverted tiles, by so many sweeps first; false when some stay.
-    fn open(&mut self, sweeps: u32, level: bool) -> bool {
-        (0..=OPENINGS).any(|k| {
-            if k > 0 {
-                self.settle_all(if k == 1 { sweeps } else { OPENING_SWEEPS }, level);
-            }
-            !any_inverted(&self.sheet)
-        })
+        self.settle_whole(judge)
     }
 
     /// Rows between the highest and the lowest open loop, each against its place on the helix.
@@ -361,61 +324,6 @@ impl<'s> Weaver<'s> {
         self.behind.clear();
         self.behind.extend(bases.iter().rev().take(REACH));
         (tops, top_base)
-    }
-
-    fn ends(&self) -> Ends<'static> {
-        Ends { range: self.range, ring: self.ring_center, level: None, opens: self.opens }
-    }
-
-    /// The first row of an open tube stays where it is.
-    fn free(&self, mut mark: Mark) -> Mark {
-        if self.ring_center.is_none()
-            && let Some(first) = self.marks.first()
-        {
-            mark.nodes = mark.nodes.max(first.nodes);
-        }
-        mark
-    }
-
-    fn settle_window(&mut self) {
-        // Someone waits: twice the sweeps every second time are as good, and have less to set up.
-        if self.quick() && !self.marks.len().is_multiple_of(2) {
-            return;
-        }
-        let oldest = self.marks.len().saturating_sub(self.options.window as usize);
-        let Some(&mark) = self.marks.get(oldest) else { return };
-        let mark = if oldest == 0 { self.free(Mark::default()) } else { self.free(mark) };
-        let effort = Effort { sweeps: self.options.window_sweeps, squareness: WINDOW_SQUARENESS };
-        let ends = self.ends();
-        // What lies two rows down hardly moves any more.
-        let newest = self.marks[self.marks.len().saturating_sub(1)].nodes;
-        let exact = if self.quick() { usize::MAX } else { newest };
-        self.relaxer.relax(self.surface, &mut self.sheet, mark, exact, effort, ends);
-    }
-
-    /// Settles the whole; points are left to first order, if they are not the last.
-    fn settle_all(&mut self, sweeps: u32, level: bool) {
-        if sweeps == 0 {
-            return;
-        }
-        let mark = self.free(Mark::default());
-        let effort = Effort { sweeps, squareness: self.options.squareness };
-        let top = if level { top::first(&self.ring) } else { usize::MAX };
-        let level = Some(Brink { rows: self.rows, top, firm: Firm::No, tail: self.tail });
-        let ends = Ends { level, ..self.ends() };
-        let exact = if self.quick() { 0 } else { usize::MAX };
-        self.relaxer.relax(self.surface, &mut self.sheet, mark, exact, effort, ends);
-    }
-
-    /// Settles the last rows once more where they end ragged.
-    fn settle_top(&mut self) {
-        let last = self.marks.len().saturating_sub(top::ROWS);
-        let mark = self.free(self.marks.get(last).copied().unwrap_or_default());
-        let ring = &top::open(&self.sheet, self.rows, &self.ring);
-        let (surface, rows, ends) = (self.surface, self.rows, self.ends());
-        let (squareness, quick, tail) = (self.options.squareness, self.quick(), self.tail);
-        let top = Top { surface, rows, ring, mark, ends, squareness, quick, tail };
-        top.settle(&mut self.relaxer, &mut self.sheet);
     }
 
     /// Puts the new tops into the ring, with short rows over them where they lag behind, and short rows over these where

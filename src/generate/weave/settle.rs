@@ -1,0 +1,108 @@
+//! When what is woven settles: the newest rows after each, the whole in the end, and its top where that is ragged.
+
+use super::{Outcome, Weaver};
+use crate::generate::relax::{Brink, Effort, Ends, Firm, Mark};
+use crate::generate::score::{Score, any_inverted};
+use crate::generate::top::{self, Top};
+use crate::generate::tries::Judge;
+
+/// Weight of square tiles while rows settle.
+const WINDOW_SQUARENESS: f64 = 0.675;
+/// Sweeps in which inverted tiles of a hurried try or a large part shall open, and how many times these.
+const OPENING_SWEEPS: u32 = 14;
+const OPENINGS: u32 = 4;
+/// Those of the first time on a large part: most often they are enough.
+const FEW_SWEEPS: u32 = 5;
+/// Parts of so many stitches have few tries.
+const MANY: usize = 50_000;
+/// Sweeps over the whole after which a try is judged.
+const FIRST_SWEEPS: u32 = 4;
+
+impl Weaver<'_> {
+    /// Settles what has been woven; over the bar after the first sweeps it is given up.
+    pub(super) fn settle_whole(&mut self, judge: Judge) -> Outcome {
+        let first = if judge.bar < f64::INFINITY { self.options.sweeps.min(FIRST_SWEEPS) } else { 0 };
+        if first > 0 {
+            self.settle_all(first, judge.level);
+            let score = Score::of(&self.sheet, self.options.ease());
+            if score.total > judge.bar {
+                return Outcome::Outdone;
+            }
+        }
+        self.settle_all(self.options.sweeps - first, judge.level);
+        if self.options.sweeps == 0 {
+            return Outcome::Done;
+        }
+        // Tries at a large part are dear: it settles longer instead.
+        if self.sheet.len() > MANY {
+            self.open(FEW_SWEEPS, judge.level);
+        }
+        self.settle_top();
+        if self.quick() && !self.open(OPENING_SWEEPS, judge.level) { Outcome::Outdone } else { Outcome::Done }
+    }
+
+    /// Settles longer while there are inverted tiles, by so many sweeps first; false when some stay.
+    fn open(&mut self, sweeps: u32, level: bool) -> bool {
+        (0..=OPENINGS).any(|k| {
+            if k > 0 {
+                self.settle_all(if k == 1 { sweeps } else { OPENING_SWEEPS }, level);
+            }
+            !any_inverted(&self.sheet)
+        })
+    }
+
+    fn ends(&self) -> Ends<'static> {
+        Ends { range: self.range, ring: self.ring_center, level: None, opens: self.opens }
+    }
+
+    /// The first row of an open tube stays where it is.
+    fn free(&self, mut mark: Mark) -> Mark {
+        if self.ring_center.is_none()
+            && let Some(first) = self.marks.first()
+        {
+            mark.nodes = mark.nodes.max(first.nodes);
+        }
+        mark
+    }
+
+    pub(super) fn settle_window(&mut self) {
+        // Someone waits: twice the sweeps every second time are as good, and have less to set up.
+        if self.quick() && !self.marks.len().is_multiple_of(2) {
+            return;
+        }
+        let oldest = self.marks.len().saturating_sub(self.options.window as usize);
+        let Some(&mark) = self.marks.get(oldest) else { return };
+        let mark = if oldest == 0 { self.free(Mark::default()) } else { self.free(mark) };
+        let effort = Effort { sweeps: self.options.window_sweeps, squareness: WINDOW_SQUARENESS };
+        let ends = self.ends();
+        // What lies two rows down hardly moves any more.
+        let newest = self.marks[self.marks.len().saturating_sub(1)].nodes;
+        let exact = if self.quick() { usize::MAX } else { newest };
+        self.relaxer.relax(self.surface, &mut self.sheet, mark, exact, effort, ends);
+    }
+
+    /// Settles the whole; points are left to first order, if they are not the last.
+    fn settle_all(&mut self, sweeps: u32, level: bool) {
+        if sweeps == 0 {
+            return;
+        }
+        let mark = self.free(Mark::default());
+        let effort = Effort { sweeps, squareness: self.options.squareness };
+        let top = if level { top::first(&self.ring) } else { usize::MAX };
+        let level = Some(Brink { rows: self.rows, top, firm: Firm::No, tail: self.tail });
+        let ends = Ends { level, ..self.ends() };
+        let exact = if self.quick() { 0 } else { usize::MAX };
+        self.relaxer.relax(self.surface, &mut self.sheet, mark, exact, effort, ends);
+    }
+
+    /// Settles the last rows once more where they end ragged.
+    fn settle_top(&mut self) {
+        let last = self.marks.len().saturating_sub(top::ROWS);
+        let mark = self.free(self.marks.get(last).copied().unwrap_or_default());
+        let ring = &top::open(&self.sheet, self.rows, &self.ring);
+        let (surface, rows, ends) = (self.surface, self.rows, self.ends());
+        let (squareness, quick, tail) = (self.options.squareness, self.quick(), self.tail);
+        let top = Top { surface, rows, ring, mark, ends, squareness, quick, tail };
+        top.settle(&mut self.relaxer, &mut self.sheet);
+    }
+}
