@@ -62,7 +62,7 @@ impl Row<'_> {
             }
             cost += sums.off(from, place, level);
             (from, level) = (place, level + step);
-            cost += price + self.taste.ridge(kind, self.below, place);
+            cost += price + self.taste.beside(kind, self.below, place);
         }
         Some(cost + sums.off(from, self.curve.len(), level))
     }

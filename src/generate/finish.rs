@@ -3,6 +3,7 @@
 use super::rows::Rows;
 use super::sheet::{Sheet, ShortRow, Work};
 use crate::ir::graph::Corners;
+use crate::ir::increases::Increases;
 use crate::ir::{Direction, Graph, Node, NodeId, Tile};
 use crate::math;
 use glam::DVec3;
@@ -11,29 +12,7 @@ use std::collections::BTreeMap;
 /// The graph of a finished sheet. `start` is the number of nodes of the first row.
 /// `turn` is the place around the tube where the helix began.
 pub(crate) fn graph(sheet: &Sheet, rows: &Rows, start: usize, poles: [Option<DVec3>; 2], turn: f64) -> Graph {
-    let mut order = Order { new_id: vec![NodeId::MAX; sheet.len()], next: 0, tiles: Vec::new() };
-    order.tiles.reserve(sheet.main.len() + sheet.main.len() / 16);
-    for id in 0..start {
-        order.number(id as NodeId);
-    }
-    let turns = Turns::new(sheet);
-    // What is still to be worked after a short row: the rest of the pass that it interrupted.
-    let mut passes = vec![sheet.main.iter()];
-    while let Some(pass) = passes.last_mut() {
-        let Some(work) = pass.next() else {
-            passes.pop();
-            continue;
-        };
-        order.stitch(work, Direction::Forward);
-        if let Some(short_row) = turns.after(work.top[1]) {
-            order.turn(Direction::Back);
-            for work in short_row.back.iter().rev() {
-                order.stitch(work, Direction::Back);
-            }
-            order.turn(Direction::Forward);
-            passes.push(short_row.forward.iter());
-        }
-    }
+    let order = Order::of(sheet, start);
     let mut nodes = vec![Node { position: DVec3::ZERO, u: 0.0, tau: 0.0, v: 0.0 }; sheet.len()];
     let mut knot = 0;
     for (old, &new) in order.new_id.iter().enumerate() {
@@ -50,6 +29,13 @@ pub(crate) fn graph(sheet: &Sheet, rows: &Rows, start: usize, poles: [Option<DVe
         }
     }
     Graph { nodes, tiles: order.tiles, start: start as u32, pole: poles[0], end_pole: poles[1] }
+}
+
+/// The increases of a finished sheet that begins with so many stitches.
+pub(super) fn increases(sheet: &Sheet, start: usize) -> Increases {
+    let mut increases = Increases::default();
+    increases.add(&Order::of(sheet, start).tiles, start as NodeId, sheet.len());
+    increases
 }
 
 /// The short rows by the node after which they turn.
@@ -86,6 +72,33 @@ struct Order {
 }
 
 impl Order {
+    fn of(sheet: &Sheet, start: usize) -> Self {
+        let mut order = Self { new_id: vec![NodeId::MAX; sheet.len()], next: 0, tiles: Vec::new() };
+        order.tiles.reserve(sheet.main.len() + sheet.main.len() / 16);
+        for id in 0..start {
+            order.number(id as NodeId);
+        }
+        let turns = Turns::new(sheet);
+        // What is still to be worked after a short row: the rest of the pass that it interrupted.
+        let mut passes = vec![sheet.main.iter()];
+        while let Some(pass) = passes.last_mut() {
+            let Some(work) = pass.next() else {
+                passes.pop();
+                continue;
+            };
+            order.stitch(work, Direction::Forward);
+            if let Some(short_row) = turns.after(work.top[1]) {
+                order.turn(Direction::Back);
+                for work in short_row.back.iter().rev() {
+                    order.stitch(work, Direction::Back);
+                }
+                order.turn(Direction::Forward);
+                passes.push(short_row.forward.iter());
+            }
+        }
+        order
+    }
+
     fn number(&mut self, old: NodeId) -> NodeId {
         let id = &mut self.new_id[old as usize];
         if *id == NodeId::MAX {

@@ -14,6 +14,7 @@ mod options;
 mod paper;
 mod patches;
 mod relax;
+mod ridges;
 mod rows;
 mod score;
 mod seam;
@@ -30,6 +31,7 @@ mod weave;
 pub use options::{Options, Preset};
 
 use crate::diag::{Code, Diagnostic, Sink};
+use crate::ir::increases::Increases;
 use crate::ir::maker::mirrored;
 use crate::ir::{Gauge, Graph, Hand, MAX_LOOPS};
 use crate::shape::{Attachment, End, Joint, ParametricSurface, Tube, area, for_maker, is_revolution};
@@ -270,6 +272,12 @@ struct Laid {
     turn: f64,
     /// Other rows than planned.
     lifted: Option<Rows>,
+}
+
+impl Laid {
+    fn increases(&self) -> Increases {
+        finish::increases(&self.sheet, self.start)
+    }
 }
 
 /// What all ways of laying stitches share.

@@ -1,6 +1,6 @@
 //! How good a settled sheet is, in one number, so that the best of several tries can be kept.
 
-use super::sheet::{EdgeKind, Quad, Shaped, Sheet, ShortRow, TileKind, Work};
+use super::sheet::{Edge, EdgeKind, Quad, Shaped, Sheet, ShortRow, TileKind, Work};
 use crate::ir::Stitch;
 use glam::DVec3;
 
@@ -67,9 +67,7 @@ impl Score {
     pub(super) fn of_fit(sheet: &Sheet) -> Self {
         let (mut length, mut sum, mut square) = (0.0, 0.0, 0.0);
         for edge in &sheet.edges {
-            let rest = if edge.kind == EdgeKind::Wale { sheet.height } else { sheet.width };
-            let d = sheet.point[edge.b as usize].distance(sheet.point[edge.a as usize]);
-            let error = d / rest - 1.0;
+            let error = length_error(sheet, edge);
             length += error.abs();
             sum += error;
             square += error * error;
@@ -98,6 +96,19 @@ impl Score {
         }
         Self { total, inverted, length, skew, stacked: 0.0 }
     }
+}
+
+fn length_error(sheet: &Sheet, edge: &Edge) -> f64 {
+    let rest = if edge.kind == EdgeKind::Wale { sheet.height } else { sheet.width };
+    let d = sheet.point[edge.b as usize].distance(sheet.point[edge.a as usize]);
+    d / rest - 1.0
+}
+
+/// The 95th percentile of absolute length errors.
+pub(super) fn p95(sheet: &Sheet) -> f64 {
+    let mut errors: Vec<f64> = sheet.edges.iter().map(|edge| length_error(sheet, edge).abs()).collect();
+    let nth = errors.len() * 95 / 100;
+    if nth < errors.len() { *errors.select_nth_unstable_by(nth, f64::total_cmp).1 } else { 0.0 }
 }
 
 /// A tile lies with its inside out, or is so flat that it may on a surface that is known better.

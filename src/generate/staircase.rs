@@ -23,6 +23,37 @@ const STACKED: f64 = 0.1;
 /// Part of the row's total that is never worth a stitch.
 const DEAD_BAND: f64 = 0.1;
 
+/// How dear an increase beside one of the row below is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Ridge {
+    /// As much as a few stitches' way to a place that is clear.
+    #[default]
+    Usual,
+    /// Little: other things matter more.
+    Low,
+    /// So much that any clear place is better: the first base of a row, or one with so few bases to the last increase.
+    Steep { apart: usize },
+}
+
+impl Ridge {
+    fn price(self) -> f64 {
+        match self {
+            Self::Usual => RIDGE,
+            Self::Low => LOW_RIDGE,
+            Self::Steep { .. } => STEEP_RIDGE,
+        }
+    }
+
+    pub(crate) fn is_steep(self) -> bool {
+        matches!(self, Self::Steep { .. })
+    }
+
+    /// Longest distance between shapings, in bases.
+    fn cooldown(self) -> usize {
+        if let Self::Steep { apart } = self { apart } else { COOLDOWN }
+    }
+}
+
 /// What a row is asked for beside its width.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Taste {
@@ -30,8 +61,10 @@ pub(crate) struct Taste {
     pub ease: f64,
     /// The first base of a new round, which is not worked together with the last of the one before.
     pub marker: Option<usize>,
-    /// Increases may stand on those of the row below for little.
-    pub stacks: bool,
+    /// What it costs that an increase stands on one of the row below.
+    pub ridge: Ridge,
+    /// How the base before the first came about.
+    pub before: Shaped,
 }
 
 impl Taste {
@@ -49,13 +82,14 @@ impl Taste {
     /// What a shaping at base `i` costs more for those of the row below, of which any at the base itself is one.
     fn stacking(self, shaping: Shaping, below: &[Shaped], i: usize) -> f64 {
         let own = if below[i] == Shaped::No { 0.0 } else { STACKED };
-        own + self.ridge(shaping, below, i)
+        own + self.beside(shaping, below, i)
     }
 
     /// What it costs more beside those of the row below: stacked ones draw a ridge.
-    pub(super) fn ridge(self, shaping: Shaping, below: &[Shaped], i: usize) -> f64 {
-        if shaping == Shaping::Inc && beside(below, i, |shaped| shaped == Shaped::Inc) {
-            if self.stacks { LOW_RIDGE } else { RIDGE }
+    pub(super) fn beside(self, shaping: Shaping, below: &[Shaped], i: usize) -> f64 {
+        let ridge = |shaped| shaped == Shaped::Inc;
+        if shaping == Shaping::Inc && (beside(below, i, ridge) || i == 0 && ridge(self.before)) {
+            self.ridge.price()
         } else if self.ease > 0.0 && beside(below, i, |shaped| shaped != Shaped::No) {
             self.ease * PLAIN_RIDGE
         } else {
@@ -75,10 +109,10 @@ const WAITING_MOST: f64 = 3.6;
 /// Stitches of a usual row, and how many times dearer shapings are in long ones with full ease.
 const USUAL_ROW: f64 = 15.0;
 const DEARER: f64 = 2.0;
-/// Price of an increase beside one of the row below, which is that of a few stitches' way to a place that is clear; the same
-/// where increases may stack; and of any shaping beside another with full ease.
+/// Prices of an increase beside one of the row below; and of any shaping beside another with full ease.
 const RIDGE: f64 = 4.0;
 const LOW_RIDGE: f64 = 0.5;
+const STEEP_RIDGE: f64 = 20.0;
 const PLAIN_RIDGE: f64 = 3.0;
 /// Mean squared distance from where a shaping belongs that evenly spread ones may have more with full ease.
 const EVEN: f64 = 0.6;
@@ -143,7 +177,7 @@ impl Staircase {
             return;
         }
         let total = self.curve.last().copied().unwrap_or(0.0).abs().max(1.0);
-        let cooldown = ((n as f64 / (2.0 * total)) as usize).min(COOLDOWN);
+        let cooldown = ((n as f64 / (2.0 * total)) as usize).min(taste.ridge.cooldown());
         // Even where every base is shaped, a decrease needs a plain stitch to join.
         let rested = cooldown.max(1);
         self.whole.clear();
@@ -155,11 +189,12 @@ impl Staircase {
         // Levels that still have a way worth following.
         let mut live = [REACH as usize; 2];
         let (mut middle, mut cheapest) = (0, 0.0);
-        let hopeless_by = HOPELESS.max(3.0 * full);
+        let steep = taste.ridge.is_steep();
+        let hopeless_by = if steep { HOPELESS + 2.0 * taste.ridge.price() } else { HOPELESS.max(3.0 * full) };
         let bases = self.curve.iter().zip(&self.whole).zip(&mut self.reached);
         for (i, ((curve, here), reached)) in bases.enumerate() {
             let price = |shaping: Shaping| {
-                let bars = i == 0 || !allowed(shaping, below, i);
+                let bars = i == 0 && (shaping == Shaping::Dec || !steep) || !allowed(shaping, below, i);
                 let marked = shaping == Shaping::Dec && taste.marker == Some(i);
                 if bars || marked { LOST } else { full + taste.stacking(shaping, below, i) }
             };
@@ -356,8 +391,29 @@ mod tests {
         below[15..17].fill(Shaped::Inc);
         let aside = place(&below, Taste::default()).expect("worked somewhere");
         assert!([13, 18].contains(&aside), "{aside}");
-        assert_eq!(place(&below, Taste { stacks: true, ..Taste::default() }), Some(15));
+        assert_eq!(place(&below, Taste { ridge: Ridge::Low, ..Taste::default() }), Some(15));
         below.fill(Shaped::Inc);
         assert!(place(&below, Taste::default()).is_some(), "where there is no other place, it stays");
+    }
+
+    #[test]
+    fn steep_ridges_are_gone_round_as_far_as_it_takes() {
+        // Two stitches are missing at one place of a row that is clear at its beginning only.
+        let increases = |place: usize, clear: usize, ridge: Ridge, before: Shaped| {
+            let mut gaps = [1.0; 40];
+            gaps[place..place + 2].fill(2.0);
+            let mut below = [Shaped::Inc; 40];
+            below[..=clear].fill(Shaped::No);
+            let mut staircase = Staircase::default();
+            staircase.solve(&gaps, &below, Taste { ridge, before, ..Taste::default() });
+            let places = 0..gaps.len();
+            places.filter(|i| staircase.plan[*i] == Shaping::Inc).collect::<Vec<_>>()
+        };
+        assert!(increases(9, 5, Ridge::Usual, Shaped::No).iter().any(|i| *i > 5));
+        let steep = |apart| increases(9, 5, Ridge::Steep { apart }, Shaped::No);
+        assert_eq!([steep(0), steep(1), steep(2)], [[3, 4], [2, 4], [1, 4]]);
+        assert_eq!(increases(4, 2, Ridge::Steep { apart: 0 }, Shaped::No), [0, 1]);
+        let beside = increases(4, 2, Ridge::Steep { apart: 0 }, Shaped::Inc);
+        assert!(beside[0] > 0, "the base before is a neighbor too: {beside:?}");
     }
 }

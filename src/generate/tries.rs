@@ -3,7 +3,9 @@
 
 use super::Laid;
 use super::options::{Options, Preset};
+use super::ridges;
 use super::score::Score;
+use super::staircase::Ridge;
 use crate::diag::Sink;
 use rayon::prelude::*;
 
@@ -35,14 +37,13 @@ const RESCUE_SWEEPS: u32 = 3;
 
 /// What a try is held to.
 #[derive(Clone, Copy)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(super) struct Judge {
     /// The score after the first sweeps over the whole over which it is given up.
     pub bar: f64,
     /// The last turn is pulled level, at the price of tiles that it may press flat.
     pub level: bool,
-    /// Increases may stand on others for little.
-    pub stacks: bool,
+    /// What it costs that increases stand on others.
+    pub ridge: Ridge,
     /// Narrow tiles are pushed open after each row, not only in the end.
     pub opens: bool,
     /// In the end long and short edges pull more than in proportion.
@@ -162,7 +163,7 @@ impl Part {
 }
 
 /// A try with its score.
-type Made = (Score, Laid);
+pub(super) type Made = (Score, Laid);
 
 /// The best of the tries that `lay` makes, in a hurry the only one; `None` when none comes to an end. A few are made at a time, and held to what those
 /// before came to: so it is the same for any number of threads.
@@ -177,7 +178,7 @@ pub(super) fn best(
     let huge = part.expected > MOST_RESCUED;
     let rescues = if huge { FEW_RESCUES } else { RESCUES };
     let most = if options.tries > 1 { tries + rescues } else { tries };
-    let first = Judge { bar: f64::INFINITY, level: true, stacks: false, opens: false, tail: true };
+    let first = Judge { bar: f64::INFINITY, level: true, ridge: Ridge::Usual, opens: false, tail: true };
     if options.preset == Preset::Fast {
         return lay(&options.hurried(), 0.0, first, sink);
     }
@@ -186,6 +187,11 @@ pub(super) fn best(
         return lay(&options, turn, Judge { tail: !part.harsh, ..first }, sink);
     }
     let scored = |laid: Laid| (Score::of(&laid.sheet, options.ease()).with_level(laid.spread), laid);
+    let attempt = |index: usize, rescue: bool, judge: Judge, sink: &Sink<'_>| {
+        let (options, turn) = part.variant(options, index, rescue);
+        let judge = Judge { level: !rescue, tail: !part.harsh || rescue, ..judge };
+        lay(&options, turn, judge, sink).map(scored)
+    };
     let is_bad =
         |best: &Option<Made>| best.as_ref().is_none_or(|(score, _)| score.inverted > 0 || score.total > BAD);
     let mut best: Option<Made> = None;
@@ -203,11 +209,10 @@ pub(super) fn best(
         };
         let make = |index: usize, sink: &Sink<'_>| {
             let rescue = index >= tries && bad && !huge;
-            let (options, turn) = part.variant(options, index, rescue);
             let stacks = rescue && (index + index / CHANGES.len()) % 2 == 1;
+            let ridge = if stacks { Ridge::Low } else { Ridge::Usual };
             let opens = index > 0 && (bad || !part.harsh) && !huge;
-            let judge = Judge { bar, level: !rescue, stacks, opens, tail: !part.harsh || rescue };
-            lay(&options, turn, judge, sink).map(scored)
+            attempt(index, rescue, Judge { bar, ridge, opens, ..first }, sink)
         };
         let made: Vec<Option<Made>> = match next {
             0 => vec![make(0, sink)],
@@ -231,5 +236,12 @@ pub(super) fn best(
             best = Some((score, laid));
         }
     }
-    best.map(|(_, laid)| laid)
+    let clear = best.as_ref().filter(|_| !huge).and_then(|best| {
+        ridges::without(best, part.expected > MOST_STITCHES, |index, apart, bar| {
+            let judge =
+                Judge { bar, ridge: Ridge::Steep { apart }, opens: index > 0 && !part.harsh, ..first };
+            attempt(index, false, judge, &Sink::new())
+        })
+    });
+    clear.or(best).map(|(_, laid)| laid)
 }

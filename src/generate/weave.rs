@@ -14,7 +14,7 @@ use super::rows::{Rows, row_speed};
 use super::sheet::{Edge, EdgeKind, Foot, Quad, Shaped, Sheet, ShortRow, TileKind, Work};
 use super::short_rows::{GAP, Planner, Rules, Stretch};
 use super::stacked::Stacked;
-use super::staircase::{Shaping, Staircase, Taste};
+use super::staircase::{Ridge, Shaping, Staircase, Taste};
 use super::stout::LEAST_LOOPS;
 use super::top;
 use super::tries::Judge;
@@ -75,6 +75,7 @@ pub(crate) struct Weaver<'s> {
     part_batch: bool,
     opens: bool,
     tail: bool,
+    ridge: Ridge,
     most: usize,
     // Buffers of one batch.
     feet: Vec<Foot>,
@@ -115,6 +116,7 @@ impl<'s> Weaver<'s> {
             part_batch: false,
             opens: false,
             tail: true,
+            ridge: Ridge::Usual,
             most,
             feet: Vec::new(),
             gaps: Vec::new(),
@@ -129,7 +131,7 @@ impl<'s> Weaver<'s> {
     ///
     /// When its score is over the bar after the first sweeps it is given up.
     pub(crate) fn run(&mut self, judge: Judge, mut progress: impl FnMut(u64, u64)) -> Outcome {
-        (self.opens, self.tail) = (judge.opens, judge.tail);
+        (self.opens, self.tail, self.ridge) = (judge.opens, judge.tail, judge.ridge);
         loop {
             self.look_for_missing();
             let length = self.batch_length();
@@ -143,7 +145,8 @@ impl<'s> Weaver<'s> {
                 self.ring.splice(0..0, bases);
                 break;
             }
-            let taste = Taste { ease: self.options.ease(), marker, stacks: judge.stacks };
+            let before = self.behind.first().map_or(Shaped::No, |id| self.sheet.shaped[*id as usize]);
+            let taste = Taste { ease: self.options.ease(), marker, ridge: judge.ridge, before };
             let (tops, top_base) = self.work(&bases[..worked], taste);
             self.settle_window();
             let marked = marker.and_then(|base| top_base.iter().position(|id| *id == bases[base]));
@@ -452,7 +455,8 @@ impl<'s> Weaver<'s> {
                     let (own, left) =
                         (self.sheet.shaped[bases[i] as usize], self.sheet.shaped[bases[i - 1] as usize]);
                     let beside = self.beside_increase(&bases[i - 1..i + 2]);
-                    let ridge = if beside { PASS_RIDGE } else { 0.0 };
+                    let most = if self.ridge.is_steep() { f64::INFINITY } else { PASS_RIDGE };
+                    let ridge = if beside { most } else { 0.0 };
                     if error > threshold + ridge && own != Shaped::Dec {
                         plan = Shaping::Inc;
                         error -= 1.0;

@@ -17,6 +17,7 @@ pub mod dialect;
 pub mod dump;
 pub mod exchange;
 pub mod graph;
+pub(crate) mod increases;
 pub mod joins;
 pub mod machine;
 pub mod maker;

@@ -10,7 +10,6 @@ mod geometry;
 mod mesh;
 mod readability;
 mod sampler;
-mod stacked;
 mod stats;
 mod walk;
 

@@ -1,6 +1,6 @@
 //! How pleasant a pattern is to work, from its folded rows and its graph.
 
-use super::stacked::Increases;
+use crate::ir::increases::Increases;
 use crate::ir::{Block, Graph, Kind, Op, Pattern, Step};
 use serde::Serialize;
 
@@ -56,14 +56,14 @@ impl Readability {
                 }
             }
         }
-        let Increases { all, stacked, forced } = Increases::of(graphs);
+        let increases = Increases::of(graphs);
         let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
         Self {
             words_per_stitch: share(words as f64, stitches as f64),
             most_words,
             equal_rounds: share(equal as f64, rounds as f64),
-            stacked_increases: share(stacked as f64, all as f64),
-            stacked_by_choice: share((stacked - forced) as f64, (all - forced) as f64),
+            stacked_increases: share(increases.stacked as f64, increases.all as f64),
+            stacked_by_choice: increases.by_choice(),
             short_rows_per_thousand: share(500.0 * turns as f64, stitches as f64),
             longest_run,
             uneven_shaping: share(uneven, shaped as f64),

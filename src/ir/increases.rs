@@ -1,10 +1,10 @@
 //! Increases that stand on increases of the round below: how many there are, and how many of them found no other place.
 
-use crate::ir::{Graph, NodeId, Stitch, Tile};
+use super::{Graph, NodeId, Stitch, Tile};
 
 /// Increases of some graphs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Increases {
+pub(crate) struct Increases {
     /// All of them.
     pub all: usize,
     /// Those within one stitch of an increase of the row below.
@@ -14,17 +14,24 @@ pub(super) struct Increases {
 }
 
 impl Increases {
-    pub(super) fn of(graphs: &[Graph]) -> Self {
+    pub(crate) fn of(graphs: &[Graph]) -> Self {
         let mut sum = Self::default();
         for graph in graphs {
-            sum.add(graph);
+            sum.add(&graph.tiles, graph.start, graph.nodes.len());
         }
         sum
     }
 
-    fn add(&mut self, graph: &Graph) {
-        let mut made_by_increase = vec![false; graph.nodes.len()];
-        for id in graph.tiles.iter().filter(|tile| is_increase(tile)).flat_map(|tile| tile.top.iter()) {
+    /// Share of those that stand on others without need among those that could stand clear.
+    pub(crate) fn by_choice(self) -> f64 {
+        let share = |part: usize, whole: usize| if whole > 0 { part as f64 / whole as f64 } else { 0.0 };
+        share(self.stacked - self.forced, self.all - self.forced)
+    }
+
+    /// Adds those of a graph of so many nodes, of which the first row has `start`.
+    pub(crate) fn add(&mut self, tiles: &[Tile], start: NodeId, nodes: usize) {
+        let mut made_by_increase = vec![false; nodes];
+        for id in tiles.iter().filter(|tile| is_increase(tile)).flat_map(|tile| tile.top.iter()) {
             if let Some(made) = made_by_increase.get_mut(*id as usize) {
                 *made = true;
             }
@@ -36,8 +43,8 @@ impl Increases {
         };
         let mut row = Row::default();
         // A row ends with a turn, and where it comes to its own loops.
-        let mut first = graph.start;
-        for tile in &graph.tiles {
+        let mut first = start;
+        for tile in tiles {
             if tile.stitch.is_none() || tile.base.iter().any(|id| *id >= first) {
                 self.add_row(row);
                 row = Row::default();
