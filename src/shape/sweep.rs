@@ -270,13 +270,15 @@ impl Sweep {
     /// The surface outside of the curve's part of u: caps, poles and what lies beyond the ends.
     #[cold]
     fn beyond(&self, u: f64, v: f64) -> Jet {
-        let at_start = u < 0.5;
+        // A wide cap on a short tube takes more than half of u.
+        let curved = self.curved();
+        let at_start = u < 0.5 * (curved.start() + curved.end());
         let (tip, edge, sign) = if at_start { (&self.start, 0.0, 1.0) } else { (&self.end, 1.0, -1.0) };
         if tip.closed {
             // The distance from the pole; on its other side the opposite half turn.
             let depth = sign * (u - edge);
             let (depth, v, flip) = if depth < 0.0 { (-depth, v + 0.5, -1.0) } else { (depth, v, 1.0) };
-            let depth = depth.min(0.5);
+            let depth = depth.min(tip.width.max(0.5));
             if depth >= tip.width {
                 let jet = self.tube(edge + sign * depth, v);
                 return Jet { du: jet.du * flip, ..jet };

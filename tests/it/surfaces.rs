@@ -237,6 +237,29 @@ fn closed_ends_with_a_size_get_flat_caps_with_round_rims() {
     assert_eq!((sweep.curve_parameter(0.0), sweep.curve_parameter(1.0)), (0.0, 1.0));
 }
 
+/// A dish or a lid: the cap takes more than half of the way from end to end.
+#[test]
+fn a_cap_on_a_low_wall_is_whole() {
+    let (wall, radius) = (10.0, 30.0);
+    let both = closed(straight(wall, vec![circle(0.0, radius)]));
+    for spec in [TubeSpec { end: End::Open, ..both.clone() }, TubeSpec { start: End::Open, ..both }] {
+        let sweep = Sweep::new(&spec).unwrap();
+        let range = sweep.tube_range();
+        assert!(range.start > 0.6 || range.end < 0.4, "{range:?}");
+        assert_jets(&sweep, &INNER);
+        assert_outward(&sweep);
+        // Pappus for the rim's quarter turn.
+        let rim = radius * radius * PI * (0.64 + 0.4 * (0.4 * PI + 0.2));
+        let exact = 2.0 * PI * radius * wall + rim;
+        assert!((area(&sweep, 256, 16) / exact - 1.0).abs() < 1e-3, "{}", area(&sweep, 256, 16) / exact);
+        let meridian = wall + radius * (0.8 + 0.1 * PI);
+        for k in 0..200 {
+            let [a, b] = [k, k + 1].map(|k| sweep.point(f64::from(k) / 200.0, 0.3));
+            assert!((a.distance(b) * 200.0 / meridian - 1.0).abs() < 0.01, "{k}: {a} to {b}");
+        }
+    }
+}
+
 #[test]
 fn a_cone_with_an_apex_stays_a_cone() {
     let sweep = Sweep::new(&closed(straight(50.0, vec![circle(0.0, 0.0), circle(1.0, 30.0)]))).unwrap();
