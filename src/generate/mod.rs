@@ -26,6 +26,7 @@ mod stout;
 mod symmetric;
 mod top;
 mod tries;
+mod untangle;
 mod weave;
 
 pub use options::{Options, Preset};
@@ -44,6 +45,7 @@ use sheet::{Foot, Sheet};
 use std::borrow::Cow;
 use stout::Stout;
 use tries::{Judge, Part};
+use untangle::Untangler;
 use weave::{Outcome, Weaver};
 
 /// Nodes may slide this far over an open end while they settle.
@@ -102,7 +104,8 @@ fn lay(
         if let Some(drift) = drift {
             warn_of(drift.turns(1.0), &tube.name, sink);
         }
-        let graph = lay_on(target, tube, loops.as_deref(), gauge, options, sink)?;
+        let even = options.symmetric && loops.is_none() && !begins_in_slit(tube) && is_revolution(target);
+        let graph = lay_on(target, tube, loops.as_deref(), gauge, options, even, sink)?;
         Some(match drift {
             Some(drift) => drift.come_out(graph),
             None => graph,
@@ -114,22 +117,26 @@ fn lay(
     })
 }
 
-/// Lays the stitches of a tube on `exact`: its surface, or what becomes of that for this maker.
+/// A branch in a slit begins at an end of it, with as many loops below as above.
+fn begins_in_slit(tube: &Tube) -> bool {
+    matches!(tube.attachment, Some(Attachment { joint: Joint::Opening, .. }))
+}
+
+/// Lays the stitches of a tube on `exact`: its surface, or what becomes of that for this maker; in `even` repeats if may be.
 fn lay_on(
     exact: &dyn ParametricSurface,
     tube: &Tube,
     loops: Option<&[DVec3]>,
     gauge: &Gauge,
     options: &Options,
+    even: bool,
     sink: &mut Sink<'_>,
 ) -> Option<Graph> {
     let fail = |sink: &mut Sink<'_>, code, message: String, help: &str| {
         sink.push(Diagnostic::new(code, message).in_round(&tube.name, None).help(help));
         None
     };
-    // A branch in a slit begins at an end of it, with as many loops below as above.
-    let slit = matches!(tube.attachment, Some(Attachment { joint: Joint::Opening, .. }));
-    let even = options.symmetric && loops.is_none() && !slit && is_revolution(exact);
+    let slit = begins_in_slit(tube);
     let ends = [tube.start, tube.end];
     let look_up = |surface| if even { None } else { looked_up(surface, ends, gauge, options) };
     let patches = look_up(exact);
@@ -138,6 +145,7 @@ fn lay_on(
     } else {
         Stout::new(exact, patches.as_ref().map(|patches| patches.thinnest), gauge)
     };
+    let outside = exact;
     let (exact, patches) = match &stout {
         Some(stout) => {
             let stout: &dyn ParametricSurface = stout;
@@ -146,17 +154,9 @@ fn lay_on(
         None => (exact, patches),
     };
     let picked_up = loops.map(|loops| first_row::picked_up(exact, loops));
-    let target: &dyn ParametricSurface = match &patches {
-        Some(patches) => patches,
-        None => exact,
-    };
-    let turned = match (&picked_up, options.maker().hand) {
-        (Some((by, _)), _) => Turned { surface: target, by: *by },
-        (None, Hand::Right) if slit => Turned { surface: target, by: 0.0 },
-        // Rounds of the left hand come to the other end of the slit first.
-        (None, Hand::Left) if slit => Turned { surface: target, by: first_row::opposite(exact) },
-        (None, _) => Turned::to_slowest_side(target),
-    };
+    let target = patches.as_ref().map_or(exact, |patches| patches as &dyn ParametricSurface);
+    let by = picked_up.as_ref().map(|(by, _)| *by);
+    let turned = begin(target, exact, by, slit, options.maker().hand);
     let fixed = slit || picked_up.is_some();
     let first = picked_up.as_ref().map(|(_, feet)| feet.as_slice());
     let surface: &dyn ParametricSurface = &turned;
@@ -175,6 +175,7 @@ fn lay_on(
     };
     sink.stage("stitches");
     let most = (3.0 * expected) as usize + 10_000;
+    let harsh = rows.is_harsh();
     let even_rounds = |options: &Options, sink: &Sink<'_>| {
         let ground = Ground::new(surface, ends, &rows, gauge, options);
         let (mut sheet, start) = ground.lay_evenly(sink)?;
@@ -184,8 +185,8 @@ fn lay_on(
         Some(Laid { sheet, start, spread: 0.0, turn: turned.by, lifted: None })
     };
     let laid = if even { even_rounds(&options.hurried(), sink) } else { None };
-    let Some(Laid { sheet, start, turn, lifted, .. }) = laid.or_else(|| {
-        let part = Part { expected, given: first.is_some(), harsh: rows.is_harsh() };
+    let laid = laid.or_else(|| {
+        let part = Part { expected, given: first.is_some(), harsh };
         let lay = |options: &Options, turn: f64, judge: Judge, sink: &Sink<'_>| {
             // Where the place of the first row is given, its height is varied.
             let lifted = first.and_then(|_| Rows::new(surface, [leads[0] + LIFT * turn, leads[1]], gauge));
@@ -209,24 +210,58 @@ fn lay_on(
         };
         let even = |sink: &Sink<'_>| if fixed || options.paper { None } else { even_rounds(options, sink) };
         tries::best(options, part, sink, lay, even)
-    }) else {
+    });
+    let Some(Laid { mut sheet, start, turn, lifted, .. }) = laid else {
         if options.preset == Preset::Fast {
-            return lay_on(exact, tube, loops, gauge, &options.unhurried(), sink);
+            return lay_on(outside, tube, loops, gauge, &options.unhurried(), even, sink);
         }
         let message =
             "the rows run away: this surface folds over itself, or changes faster than stitches follow";
         return fail(sink, Code::SurfaceBroken, message.into(), GENTLER);
     };
+    let Ground { poles, mut range, .. } = Ground::new(surface, ends, &rows, gauge, options);
+    range[0] = first.unwrap_or_default().iter().fold(range[0], |least, foot| least.min(foot.u));
+    // What is to be seen as it was laid stays so.
+    if !options.paper && options.sweeps > 0 {
+        let close = stout.is_some() || harsh;
+        let untangler = Untangler { on: exact, outside, turn, range, start, pole: poles[0], close };
+        let [before, after] = untangler.untangle(&mut sheet);
+        if even && before > 0 && (after > 0 || !tries::is_sound(&sheet)) {
+            return lay_on(outside, tube, loops, gauge, options, false, sink);
+        }
+    }
+    if let Some((code, message, help)) = fault(&sheet, gauge) {
+        return fail(sink, code, message, help);
+    }
+    Some(finish::graph(&sheet, lifted.as_ref().unwrap_or(&rows), start, poles, turn))
+}
+
+/// Where around the tube the helix begins: `by` where its first row is picked up.
+fn begin<'s>(
+    target: &'s dyn ParametricSurface,
+    exact: &dyn ParametricSurface,
+    by: Option<f64>,
+    slit: bool,
+    hand: Hand,
+) -> Turned<'s> {
+    match (by, hand) {
+        (Some(by), _) => Turned { surface: target, by },
+        (None, Hand::Right) if slit => Turned { surface: target, by: 0.0 },
+        // Rounds of the left hand come to the other end of the slit first.
+        (None, Hand::Left) if slit => Turned { surface: target, by: first_row::opposite(exact) },
+        (None, _) => Turned::to_slowest_side(target),
+    }
+}
+
+/// What is wrong with a finished sheet, and what to say.
+fn fault(sheet: &Sheet, gauge: &Gauge) -> Option<(Code, String, &'static str)> {
     if sheet.main.is_empty() {
         let message =
             format!("a stitch of {:.2} mm height leaves no round to work on this tube", gauge.height);
-        return fail(sink, Code::TooFewRows, message, "use a smaller stitch or a longer shape");
+        return Some((Code::TooFewRows, message, "use a smaller stitch or a longer shape"));
     }
-    if sheet.point.iter().any(|p| !p.is_finite()) {
-        return fail(sink, Code::SurfaceBroken, "stitches ran off this surface".into(), GENTLER);
-    }
-    let poles = Ground::new(surface, ends, &rows, gauge, options).poles;
-    Some(finish::graph(&sheet, lifted.as_ref().unwrap_or(&rows), start, poles, turn))
+    let ran_off = sheet.point.iter().any(|p| !p.is_finite());
+    ran_off.then(|| (Code::SurfaceBroken, "stitches ran off this surface".into(), GENTLER))
 }
 
 /// Whether so many stitches can be laid; else what to say.

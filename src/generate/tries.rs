@@ -5,6 +5,7 @@ use super::Laid;
 use super::options::{Options, Preset};
 use super::ridges;
 use super::score::Score;
+use super::sheet::Sheet;
 use super::staircase::Ridge;
 use crate::diag::Sink;
 use rayon::prelude::*;
@@ -164,6 +165,11 @@ impl Part {
 
 /// A try with its score.
 pub(super) type Made = (Score, Laid);
+
+/// False for a sheet so bad that anything else is worth a try.
+pub(super) fn is_sound(sheet: &Sheet) -> bool {
+    Score::of_fit(sheet).total <= BAD
+}
 
 /// The best of the tries that `lay` makes, in a hurry the only one; `None` when none comes to an end. A few are made at a time, and held to what those
 /// before came to: so it is the same for any number of threads.

@@ -19,8 +19,8 @@ use glam::{DVec3, Vec4, Vec4Swizzles};
 use lanes::{Four, Matrices, root};
 
 /// Weight of the soft links that close the steps at short-row ends, and their rest length in stitch widths.
-const STEP_WEIGHT: f32 = 0.2;
-const STEP_REST: f32 = 0.9;
+pub(super) const STEP_WEIGHT: f32 = 0.2;
+pub(super) const STEP_REST: f32 = 0.9;
 /// So many shares have tiles; those across a step count half.
 const SHARES: u8 = 2;
 /// The last turn of tops begins a hair behind a whole turn before the end.
