@@ -140,7 +140,7 @@ fn lay_on(
     let ends = [tube.start, tube.end];
     let look_up = |surface| if even { None } else { looked_up(surface, ends, gauge, options) };
     let patches = look_up(exact);
-    let stout = if options.paper || even {
+    let stout = if options.paper {
         None
     } else {
         Stout::new(exact, patches.as_ref().map(|patches| patches.thinnest), gauge)
@@ -233,6 +233,7 @@ fn lay_on(
     if let Some((code, message, help)) = fault(&sheet, gauge) {
         return fail(sink, code, message, help);
     }
+    tell_wider(stout.as_ref(), gauge, &tube.name, sink);
     Some(finish::graph(&sheet, lifted.as_ref().unwrap_or(&rows), start, poles, turn))
 }
 
@@ -296,6 +297,17 @@ fn warn_of(turns: f64, part: &str, sink: &mut Sink<'_>) {
         let help = "work 20 rounds of a tube, and see by how many stitches a column has moved: `lean` is a twentieth of it";
         sink.push(Diagnostic::new(Code::MuchLean, message).in_round(part, None).help(help));
     }
+}
+
+/// Tells of a stretch that comes out thicker than it is.
+fn tell_wider(stout: Option<&Stout<'_>>, gauge: &Gauge, part: &str, sink: &mut Sink<'_>) {
+    let Some((length, most)) = stout.and_then(|stout| stout.wider(gauge)) else { return };
+    let message = format!(
+        "{length:.0} mm of {part} are thinner than {} stitches around, and made up to {most:.1} times as thick",
+        stout::LEAST_LOOPS
+    );
+    let help = "use a smaller stitch or a thicker tube there, if it shall keep its proportions";
+    sink.push(Diagnostic::new(Code::MadeThicker, message).in_round(part, None).help(help));
 }
 
 /// A finished sheet, the stitches of its first row, and where around the tube the helix began.

@@ -14,6 +14,11 @@ const LEAST_GIRTH: f64 = LEAST_LOOPS as f64;
 /// Places along the tube, and looks around it.
 const PLACES: usize = 256;
 const LOOKS: u32 = 12;
+/// Places at which one that is nowhere near as thin is told.
+const FEW_PLACES: u32 = 16;
+/// What is wider by less than this, or over fewer rows, no one sees.
+const SEEN: f64 = 1.1;
+const SEEN_ROWS: f64 = 3.0;
 /// Places this near a pole are as thick as the next: every tip is thin, and closes with a ring. In stitch heights.
 const POLE: f64 = 0.75;
 
@@ -34,14 +39,16 @@ pub(super) struct Stout<'s> {
 
 impl<'s> Stout<'s> {
     /// The surface widened; `None` where it is thick enough as it is, or has no size at all. Its least girth (mm) away from
-    /// the poles saves the looks where it is known.
+    /// the poles saves most looks where it is known.
     pub(super) fn new(
         surface: &'s dyn ParametricSurface,
         thinnest: Option<f64>,
         gauge: &Gauge,
     ) -> Option<Self> {
         let least = LEAST_GIRTH * gauge.width;
-        if thinnest.is_some_and(|girth| girth >= least) {
+        let thick = |u: f64| girth(surface, u, LOOKS) >= 2.0 * least;
+        let is_thick = || (1..FEW_PLACES).all(|k| thick(f64::from(k) / f64::from(FEW_PLACES)));
+        if thinnest.map_or_else(is_thick, |girth| girth >= least) {
             return None;
         }
         let ends = [0.0, 1.0].map(|u| surface.point(u, 0.0));
@@ -74,6 +81,18 @@ impl<'s> Stout<'s> {
             }
         }
         Some(Self { surface, places: places.into_iter().map(|(place, _)| place).collect() })
+    }
+}
+
+impl Stout<'_> {
+    /// Length in mm over which the tube is visibly wider than asked for, and by how many times at most; `None` for what no one
+    /// sees.
+    pub(super) fn wider(&self, gauge: &Gauge) -> Option<(f64, f64)> {
+        let seen = |pair: &&[Place]| pair.iter().all(|place| place.scale > SEEN);
+        let length: f64 =
+            self.places.windows(2).filter(seen).map(|pair| pair[0].middle.distance(pair[1].middle)).sum();
+        let most = self.places.iter().map(|place| place.scale).fold(1.0, f64::max);
+        (length > SEEN_ROWS * gauge.height).then_some((length, most))
     }
 }
 
@@ -111,6 +130,9 @@ mod tests {
         let gauge = Gauge::new(3.0, 3.0);
         let spike = Cone { start: 0.0, end: 10.0, length: 100.0 };
         let stout = Stout::new(&spike, None, &gauge).expect("a thin tip");
+        // It is less than 15 mm around, divided by 1.1, from 22 mm below its tip.
+        let (length, most) = stout.wider(&gauge).expect("seen");
+        assert!((length - 21.7).abs() < 1.0 && most > 2.0, "{length} {most}");
         for k in 4..=100 {
             let u = f64::from(k) / 100.0;
             let (girth, own) = (girth(&stout, u, 12), girth(&spike, u, 12));

@@ -4,7 +4,7 @@ use crate::baseline::tapered;
 use crate::maker::{make, shape, written_rounds};
 use crate::properties::{Random, surface};
 use glam::DVec3;
-use picot::diag::Sink;
+use picot::diag::{Code, Sink};
 use picot::generate::{Options, generate};
 use picot::ir::Gauge;
 use picot::metrics::{Measure, measure};
@@ -79,6 +79,22 @@ fn a_spike_is_worked_in_rounds_of_five_at_least() {
         assert!((0.98..1.4).contains(&measure.coverage), "{}", measure.coverage);
         assert_eq!(measure.inverted_tiles, 0);
     }
+}
+
+/// A tail thin as a cord on a straight tube, which is worked in even rounds: five stitches around as well, and the maker is
+/// told.
+#[test]
+fn a_straight_cord_is_made_thicker_with_a_word() {
+    let text = "name = \"tail\"\nunit = \"mm\"\n[gauge]\nstitch = { width = 5, height = 5 }\n[trunk]\n\
+                curve = [[0, 0, 0], [0, 0, 120]]\nend = \"closed\"\n\
+                section = [{ at = 0, circle = 20 }, { at = 0.3, circle = 2 }, { at = 1, circle = 1 }]\n";
+    let shape = shape(text);
+    let mut sink = Sink::new();
+    let program = picot::program(&shape, &picot::Options::default(), &mut sink).expect("generates");
+    assert!(sink.diagnostics().iter().any(|it| it.code == Code::MadeThicker), "{:?}", sink.diagnostics());
+    let rounds = written_rounds(&program);
+    let last = rounds.last().expect("rounds");
+    assert!(last.contains("5 sc (5)"), "{rounds:?}");
 }
 
 /// Inverted tiles over so many harsh surfaces, as a share of all stitches.

@@ -31,6 +31,14 @@ SurfaceBroken = "E1303", "the surface cannot be covered";
 ///
 /// Wrong: `--set lean=0.8` where a column moved by 0.8 stitches over 20 rounds. Right: `--set lean=0.04`.
 MuchLean = "W1306", "stitches lean much";
+/// A tube is thinner than five stitches around, and is made thicker.
+///
+/// Fewer stitches than five do not make a round that can be worked: the tip of a spike, a very thin neck or a tube like a cord
+/// comes out as thick as five stitches are. For something thinner make a cord, or use a thinner yarn.
+///
+/// Wrong: a tail of 4 mm radius with stitches 6 mm wide
+/// Right: stitches at most 5 mm wide for this tail
+MadeThicker = "W1307", "a tube is made thicker than asked for";
 /// There are no stitches where a branch is joined.
 ///
 /// Each first loop of a branch is worked into the nearest stitch of its parent; for a slit, a run of stitches of one
