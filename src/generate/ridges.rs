@@ -1,6 +1,6 @@
 //! More tries where increases stand on increases although they need not: stacked ones draw a ridge.
 
-use super::score::p95;
+use super::score::{area, p95};
 use super::tries::Made;
 use rayon::prelude::*;
 
@@ -10,6 +10,8 @@ const FEW: f64 = 0.05;
 /// length error, skew, and rows between the highest and the lowest loop of the last turn, of which so many are free.
 const LUCK: [f64; 4] = [0.003, 0.007, 0.007, 0.25];
 const LEVEL_FREE: f64 = 0.75;
+/// How much more or less its tiles may cover, as a share.
+const COVERED: f64 = 0.008;
 /// A try whose score is so much worse before its rows have settled is given up: tiles may still turn over.
 const BAR: f64 = 2.3;
 /// Tries that are made two at a time: the change, and the fewest bases between two increases of a row. Increases side by side make
@@ -65,6 +67,7 @@ fn is_as_good((score, laid): &Made, (best, best_laid): &Made) -> bool {
     score.inverted == 0
         && score.length <= best.length + length
         && p95(&laid.sheet) <= p95(&best_laid.sheet) + tail
+        && (area(&laid.sheet) / area(&best_laid.sheet) - 1.0).abs() <= COVERED
         && score.skew <= best.skew + skew
         && laid.spread <= (best_laid.spread + level).max(LEVEL_FREE)
 }

@@ -111,6 +111,18 @@ pub(super) fn p95(sheet: &Sheet) -> f64 {
     if nth < errors.len() { *errors.select_nth_unstable_by(nth, f64::total_cmp).1 } else { 0.0 }
 }
 
+/// The area of all tiles but turns and those of three corners.
+pub(super) fn area(sheet: &Sheet) -> f64 {
+    let half = |(area, normal): (f64, DVec3)| 0.5 * area / normal.length();
+    sheet
+        .quads
+        .iter()
+        .filter_map(|quad| twice_area(sheet, quad))
+        .map(half)
+        .filter(|area| area.is_finite())
+        .sum()
+}
+
 /// A tile lies with its inside out, or is so flat that it may on a surface that is known better.
 pub(super) fn any_inverted(sheet: &Sheet) -> bool {
     let flat = FLAT * 2.0 * sheet.width * sheet.height;

@@ -364,7 +364,7 @@ fn every_shape_comes_out_as_well_with_stitches_that_lean() {
         let no_worse = |a: f64, b: f64, give: f64| assert!(a < b + give, "{name}: {a} and {b}");
         no_worse(leaning.length_error.chord.mean_abs, plain.length_error.chord.mean_abs, 0.02);
         no_worse(leaning.skew.all.mean, plain.skew.all.mean, 0.05);
-        no_worse((leaning.coverage - 1.0).abs(), (plain.coverage - 1.0).abs(), 0.045);
+        no_worse((leaning.coverage - 1.0).abs(), (plain.coverage - 1.0).abs(), 0.05);
         assert!(
             leaning.level.missing.abs() < plain.level.missing.abs() + 1.4,
             "{name}: {}",
