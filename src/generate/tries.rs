@@ -29,6 +29,9 @@ const BAR: f64 = 0.1;
 /// that are pushed open after each row push others over.
 const RESCUES: usize = 8;
 const FEW_RESCUES: usize = 4;
+/// After so many of them what is not bad hardly gets better, unless it is harsh, or small and cheap to try at.
+const USEFUL: usize = 2;
+const SMALL: f64 = 400.0;
 /// How many times worse even rounds may be than what has inverted tiles, and be kept instead.
 const TANGLED: f64 = 2.0;
 /// Tries after the first are made side by side, so many at a time whatever the number of threads.
@@ -205,7 +208,10 @@ pub(super) fn best(
     // Once more around where tiles are inverted, with increases free to stand on others where they were not.
     let last = if tries > 1 { most + CHANGES.len() } else { most };
     let done = |best: &Made, next: usize| {
-        part.is_done(best, next, tries) || (huge || next >= most) && best.0.inverted == 0
+        let hard = best.0.total > BAD || part.harsh || part.expected < SMALL;
+        let useful = hard || next < tries + USEFUL;
+        let enough = huge || next >= most || !useful;
+        part.is_done(best, next, tries) || enough && best.0.inverted == 0
     };
     while next < last && !best.as_ref().is_some_and(|best| done(best, next)) {
         let bad = is_bad(&best);
