@@ -123,6 +123,18 @@ pub(super) fn area(sheet: &Sheet) -> f64 {
         .sum()
 }
 
+/// Mean absolute length error of one edge of so many.
+pub(super) fn some_length_error(sheet: &Sheet, of: usize) -> f64 {
+    let some = sheet.edges.iter().step_by(of);
+    let count = some.len().max(1) as f64;
+    some.map(|edge| {
+        let rest = if edge.kind == EdgeKind::Wale { sheet.height } else { sheet.width };
+        (sheet.point[edge.b as usize].distance(sheet.point[edge.a as usize]) / rest - 1.0).abs()
+    })
+    .sum::<f64>()
+        / count
+}
+
 /// A tile lies with its inside out, or is so flat that it may on a surface that is known better.
 pub(super) fn any_inverted(sheet: &Sheet) -> bool {
     let flat = FLAT * 2.0 * sheet.width * sheet.height;

@@ -4,7 +4,7 @@
 use super::Laid;
 use super::options::{Options, Preset};
 use super::ridges;
-use super::score::Score;
+use super::score::{Score, some_length_error};
 use super::sheet::Sheet;
 use super::staircase::Ridge;
 use crate::diag::Sink;
@@ -34,6 +34,9 @@ const USEFUL: usize = 2;
 const SMALL: f64 = 400.0;
 /// How many times worse even rounds may be than what has inverted tiles, and be kept instead.
 const TANGLED: f64 = 2.0;
+/// In a hurry one edge of so many is looked at, and a mean length error from here on is worth a second look.
+const SOME: usize = 8;
+const FAR_OFF: f64 = 0.08;
 /// Tries after the first are made side by side, so many at a time whatever the number of threads.
 const BESIDE: usize = 2;
 /// Sweeps of a rescue: inverted tiles open slowly.
@@ -174,7 +177,12 @@ pub(super) fn is_sound(sheet: &Sheet) -> bool {
     Score::of_fit(sheet).total <= BAD
 }
 
-/// The best of the tries that `lay` makes, in a hurry the only one; `None` when none comes to an end. A few are made at a time, and held to what those
+/// False for a sheet whose edges are far off, as some of them tell.
+fn is_close(sheet: &Sheet) -> bool {
+    some_length_error(sheet, SOME) <= FAR_OFF
+}
+
+/// The best of the tries that `lay` makes, in a hurry the only one; `None` when none comes to a good end. A few are made at a time, and held to what those
 /// before came to: so it is the same for any number of threads.
 pub(super) fn best(
     options: &Options,
@@ -189,7 +197,7 @@ pub(super) fn best(
     let most = if options.tries > 1 { tries + rescues } else { tries };
     let first = Judge { bar: f64::INFINITY, level: true, ridge: Ridge::Usual, opens: false, tail: true };
     if options.preset == Preset::Fast {
-        return lay(&options.hurried(), 0.0, first, sink);
+        return lay(&options.hurried(), 0.0, first, sink).filter(|laid| is_close(&laid.sheet));
     }
     if most == 1 {
         let (options, turn) = part.variant(options, 0, false);

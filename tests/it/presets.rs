@@ -3,6 +3,7 @@
 use picot::diag::{Sink, Sources};
 use picot::frontend::{Input, reader};
 use picot::generate::Preset;
+use picot::ir::Gauge;
 use picot::ir::verify::verify;
 use std::fs;
 use std::path::Path;
@@ -37,4 +38,22 @@ fn a_hurried_try_is_sound() {
     }
     assert!(inverted <= 3, "{inverted}");
     assert!(count > 20.0 && sum / count < 0.05, "{}", sum / count);
+}
+
+/// A tight bend on few stitches comes out a seventh too long in a hurry: then it is made without.
+#[test]
+#[expect(clippy::disallowed_methods, reason = "the shape is a file")]
+fn a_hurried_try_that_is_far_off_is_made_again() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("shapes/elbow.toml");
+    let loader = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+    let mut sources = Sources::new(&loader);
+    let mut sink = Sink::new();
+    let source = sources.add("shape", fs::read(file).unwrap()).unwrap();
+    let mut options = picot::Options { gauge: Some(Gauge::new(2.5, 2.5)), ..picot::Options::default() };
+    options.generate.preset = Preset::Fast;
+    let read = picot::read(&source, reader("shape").unwrap(), &options, &mut sources, &mut sink);
+    let Some(Input::Shape(shape)) = read else { panic!("{:?}", sink.diagnostics()) };
+    let program = picot::program(&shape, &options, &mut sink).expect("generates");
+    let measure = picot::measure(&shape, &program);
+    assert!(measure.length_error.chord.mean_abs < 0.07, "{:?}", measure.length_error.chord);
 }
