@@ -25,6 +25,8 @@ const ANY_INVERTED: f64 = 2.0;
 
 /// A tile with less than this share of its area is flat.
 const FLAT: f64 = 0.05;
+/// Of large parts one tile of so many may be inverted until all is settled, and is mended then (`untangle`).
+pub(super) const FEW_OF: usize = 10_000;
 
 /// What a try came to: lower is better.
 #[derive(Clone, Copy, Debug, Default)]
@@ -142,6 +144,11 @@ pub(super) fn any_inverted(sheet: &Sheet) -> bool {
         twice_area(sheet, quad)
             .is_some_and(|(area, normal)| area <= 0.0 || area * area <= flat * flat * normal.length_squared())
     })
+}
+
+/// How many tiles lie with their inside out.
+pub(super) fn inverted(sheet: &Sheet) -> usize {
+    sheet.quads.iter().filter(|quad| is_inverted(sheet, quad)).count()
 }
 
 /// The tile lies with its inside out; turns and those of three corners count as fine.

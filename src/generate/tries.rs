@@ -4,7 +4,7 @@
 use super::Laid;
 use super::options::{Options, Preset};
 use super::ridges;
-use super::score::{Score, some_length_error};
+use super::score::{FEW_OF, Score, some_length_error};
 use super::sheet::Sheet;
 use super::staircase::Ridge;
 use crate::diag::Sink;
@@ -203,7 +203,14 @@ pub(super) fn best(
         let (options, turn) = part.variant(options, 0, false);
         return lay(&options, turn, Judge { tail: !part.harsh, ..first }, sink);
     }
-    let scored = |laid: Laid| (Score::of(&laid.sheet, options.ease()).with_level(laid.spread), laid);
+    let scored = |laid: Laid| {
+        let mut score = Score::of(&laid.sheet, options.ease()).with_level(laid.spread);
+        // A few can be mended at the end.
+        if huge && score.inverted <= laid.sheet.len() / FEW_OF {
+            score.inverted = 0;
+        }
+        (score, laid)
+    };
     let attempt = |index: usize, rescue: bool, judge: Judge, sink: &Sink<'_>| {
         let (options, turn) = part.variant(options, index, rescue);
         let judge = Judge { level: !rescue, tail: !part.harsh || rescue, ..judge };

@@ -2,7 +2,7 @@
 
 use super::{Outcome, Weaver};
 use crate::generate::relax::{Brink, Effort, Ends, Firm, Mark};
-use crate::generate::score::{Score, any_inverted};
+use crate::generate::score::{FEW_OF, Score, any_inverted, inverted};
 use crate::generate::top::{self, Top};
 use crate::generate::tries::Judge;
 
@@ -34,7 +34,7 @@ impl Weaver<'_> {
             return Outcome::Done;
         }
         // Tries at a large part are dear: it settles longer instead.
-        if self.sheet.len() > MANY {
+        if self.sheet.len() > MANY && inverted(&self.sheet) > self.sheet.len() / FEW_OF {
             self.open(FEW_SWEEPS, judge.level);
         }
         self.settle_top();
