@@ -129,12 +129,7 @@ pub(super) fn area(sheet: &Sheet) -> f64 {
 pub(super) fn some_length_error(sheet: &Sheet, of: usize) -> f64 {
     let some = sheet.edges.iter().step_by(of);
     let count = some.len().max(1) as f64;
-    some.map(|edge| {
-        let rest = if edge.kind == EdgeKind::Wale { sheet.height } else { sheet.width };
-        (sheet.point[edge.b as usize].distance(sheet.point[edge.a as usize]) / rest - 1.0).abs()
-    })
-    .sum::<f64>()
-        / count
+    some.map(|edge| length_error(sheet, edge).abs()).sum::<f64>() / count
 }
 
 /// A tile lies with its inside out, or is so flat that it may on a surface that is known better.
@@ -159,14 +154,10 @@ fn is_inverted(sheet: &Sheet, quad: &Quad) -> bool {
 /// Twice the area of a tile as seen from outside, times the length of the normal that comes with it; `None` for turns and tiles
 /// of three corners.
 fn twice_area(sheet: &Sheet, quad: &Quad) -> Option<(f64, DVec3)> {
-    let [b0, b1, t0, t1] = quad.corners;
-    if !matches!(quad.kind, TileKind::Wales | TileKind::Step) || b0 == b1 || t0 == t1 {
-        return None;
-    }
-    let [left, right, top_left, top_right] = quad.corners.map(|id| sheet.point[id as usize]);
-    let jet = sheet.jet(b0);
+    let area = quad.area(|id| sheet.point[id as usize])?;
+    let jet = sheet.jet(quad.corners[0]);
     let normal = jet.dv.cross(jet.du);
-    Some((normal.dot((right - top_left).cross(top_right - left)), normal))
+    Some((normal.dot(area), normal))
 }
 
 /// The increases of the long rows that stand beside one of the row below although there are bases that are clear, as a

@@ -43,6 +43,18 @@ pub(crate) struct Quad {
     pub kind: TileKind,
 }
 
+impl Quad {
+    /// Twice the area of the tile times its normal; `None` for turns and tiles of three corners.
+    pub(super) fn area(&self, at: impl Fn(NodeId) -> DVec3) -> Option<DVec3> {
+        let [b0, b1, t0, t1] = self.corners;
+        if !matches!(self.kind, TileKind::Wales | TileKind::Step) || b0 == b1 || t0 == t1 {
+            return None;
+        }
+        let [left, right, top_left, top_right] = self.corners.map(at);
+        Some((right - top_left).cross(top_right - left))
+    }
+}
+
 /// One stitch in the log: bases and tops in the order of a forward row; unused places repeat the first.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Work {

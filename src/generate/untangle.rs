@@ -5,7 +5,7 @@
 //! where no tile is inverted.
 
 use super::relax::{STEP_REST, STEP_WEIGHT};
-use super::sheet::{EdgeKind, Quad, Sheet, TileKind, pull_back};
+use super::sheet::{EdgeKind, Quad, Sheet, pull_back};
 use crate::ir::NodeId;
 use crate::shape::{Jet, ParametricSurface};
 use glam::DVec3;
@@ -102,7 +102,7 @@ impl Untangler<'_> {
                 || size < PINCHED * seen(quad.corners[3]).length_squared()
         };
         let is_inverted = |quad: &Quad| {
-            area(quad, |id| sheet.point[id as usize]).is_some_and(|area| {
+            quad.area(|id| sheet.point[id as usize]).is_some_and(|area| {
                 (self.close || leans(quad, area)) && area.dot(self.normal_at(sheet, quad.corners[0])) <= 0.0
             })
         };
@@ -166,7 +166,7 @@ impl Untangler<'_> {
 
 /// The price of a tile that is seen against a normal; 0 for turns and tiles of three corners.
 fn tile(sheet: &Sheet, quad: &Quad, at: impl Fn(NodeId) -> DVec3, normal: DVec3) -> f64 {
-    let Some(area) = area(quad, &at) else { return 0.0 };
+    let Some(area) = quad.area(&at) else { return 0.0 };
     let [b0, b1, t0, t1] = quad.corners.map(at);
     let (across, up) = ((b1 - b0) + (t1 - t0), (t0 - b0) + (t1 - b1));
     let size = (across.length_squared() * up.length_squared()).sqrt();
@@ -175,16 +175,6 @@ fn tile(sheet: &Sheet, quad: &Quad, at: impl Fn(NodeId) -> DVec3, normal: DVec3)
     let lack = (NARROW - share).max(0.0);
     let inverted = if share <= 0.0 { INVERTED } else { 0.0 };
     SQUARENESS * cos * cos + NARROW_WEIGHT * lack * lack + inverted
-}
-
-/// Twice the area of a tile times its normal; `None` for turns and tiles of three corners.
-fn area(quad: &Quad, at: impl Fn(NodeId) -> DVec3) -> Option<DVec3> {
-    let [b0, b1, t0, t1] = quad.corners;
-    if !matches!(quad.kind, TileKind::Wales | TileKind::Step) || b0 == b1 || t0 == t1 {
-        return None;
-    }
-    let [left, right, top_left, top_right] = quad.corners.map(at);
-    Some((right - top_left).cross(top_right - left))
 }
 
 /// So far around the tube and along it (mm).
