@@ -2,7 +2,7 @@
 //! helix, each joined to the nearest node of the next row. No short rows, no moving window, and its wales may cross.
 
 use super::options::Options;
-use super::relax::{Effort, Ends, Mark, Relaxer};
+use super::relax::{Effort, Ends, Mark, Relaxer, Stretch};
 use super::sheet::{Foot, Shaped, Sheet};
 use crate::diag::{Code, Diagnostic, Sink};
 use crate::ir::{Gauge, MAX_ROW, Node, NodeId};
@@ -61,10 +61,11 @@ impl Baseline {
             before = Some((base, top));
         }
         let free = if tube.start == End::Closed { 0 } else { self.start() };
+        let all = Stretch::since(Mark { nodes: free, ..Mark::default() }, &sheet);
         Relaxer::default().relax(
             surface,
             &mut sheet,
-            Mark { nodes: free, ..Mark::default() },
+            all,
             0,
             Effort { sweeps: options.sweeps, squareness: options.squareness },
             Ends { range: [0.0, 1.0], ring: None, level: None, opens: false },

@@ -38,7 +38,7 @@ use crate::ir::{Gauge, Graph, Hand, MAX_LOOPS};
 use crate::shape::{Attachment, End, Joint, ParametricSurface, Tube, area, for_maker, is_revolution};
 use glam::DVec3;
 use patches::Patches;
-use relax::{Brink, Effort, Ends, Firm, Mark, Relaxer};
+use relax::{Brink, Effort, Ends, Firm, Mark, Relaxer, Stretch};
 use rows::Rows;
 use seam::Turned;
 use sheet::{Foot, Sheet};
@@ -381,10 +381,11 @@ impl<'s> Ground<'s> {
         });
         let free = if self.poles[0].is_some() { 0 } else { start };
         let top = sheet.len() - counts[counts.len() - 1] as usize;
+        let all = Stretch::since(Mark { nodes: free, ..Mark::default() }, &sheet);
         Relaxer::default().relax(
             surface,
             &mut sheet,
-            Mark { nodes: free, ..Mark::default() },
+            all,
             0,
             Effort { sweeps: options.sweeps, squareness: options.squareness },
             Ends {

@@ -3,7 +3,7 @@
 //! Short rows leave steps two rows high, and the last ones have no row above them that would hide them. The sweeps over the whole
 //! level short steps; long ones, as in rounds of many fine stitches, take the rows below with them, and more sweeps.
 
-use super::relax::{Brink, Effort, Ends, Firm, Mark, Relaxer};
+use super::relax::{Brink, Effort, Ends, Firm, Mark, Relaxer, Stretch};
 use super::rows::Rows;
 use super::score::Score;
 use super::sheet::{Sheet, Work};
@@ -53,6 +53,7 @@ impl Top<'_> {
             false if many => UNEVEN,
             false => RAGGED,
         };
+        let rows = Stretch::since(self.mark, sheet);
         for _ in 0..TIMES {
             let off = spread(sheet, self.rows, self.ring);
             if off <= ragged {
@@ -60,12 +61,12 @@ impl Top<'_> {
             }
             let before = Places::of(sheet, self.mark.nodes);
             let fit = Score::of_fit(sheet);
-            relaxer.relax(self.surface, sheet, self.mark, 0, effort, ends);
+            relaxer.relax(self.surface, sheet, rows, 0, effort, ends);
             let mut after = Score::of_fit(sheet);
             if after.inverted > fit.inverted {
                 // Softly, what was pressed flat opens again.
                 let soft = Ends { level: Some(Brink { firm: Firm::No, ..brink }), ..ends };
-                relaxer.relax(self.surface, sheet, self.mark, 0, effort, soft);
+                relaxer.relax(self.surface, sheet, rows, 0, effort, soft);
                 after = Score::of_fit(sheet);
             }
             let worse = spread(sheet, self.rows, self.ring) > off;

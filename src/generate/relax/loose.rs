@@ -104,7 +104,7 @@ impl Relaxer {
                 Firm::Closely => Pull { slack: CLOSE_SLACK, ..FIRM_PULL },
             };
             let mut knot = rows.count as usize;
-            for i in top.max(span.first)..sheet.len() {
+            for i in top.max(span.first)..span.end() {
                 if !ends.pulls_level(sheet, i) {
                     continue;
                 }

@@ -51,6 +51,20 @@ impl Mark {
     }
 }
 
+/// What is free to move: all that was added to a sheet between two marks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stretch {
+    pub from: Mark,
+    pub until: Mark,
+}
+
+impl Stretch {
+    /// From a mark to the end.
+    pub(crate) fn since(from: Mark, sheet: &Sheet) -> Self {
+        Self { from, until: Mark::of(sheet) }
+    }
+}
+
 /// What holds the ends.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ends<'r> {
@@ -183,6 +197,9 @@ struct Span {
 }
 
 impl Span {
+    fn end(&self) -> usize {
+        self.first + self.count
+    }
     /// Kept nodes before the first free one.
     fn fringe(&self) -> usize {
         self.first - self.low
@@ -193,32 +210,32 @@ impl Span {
 }
 
 impl Relaxer {
-    /// Relaxes all nodes from `from.nodes` on. Nodes from `exact` on have exact points and derivatives in the end; those
+    /// Relaxes the nodes of a stretch. Those from `exact` on have exact points and derivatives in the end; those
     /// before stay where the last look at the surface put them, to first order.
     pub(crate) fn relax(
         &mut self,
         surface: &dyn ParametricSurface,
         sheet: &mut Sheet,
-        from: Mark,
+        Stretch { from, until }: Stretch,
         exact: usize,
         effort: Effort,
         ends: Ends<'_>,
     ) {
-        let first = from.nodes;
-        if effort.sweeps == 0 || first >= sheet.len() {
-            for i in first.max(exact)..sheet.len() {
+        let (first, end) = (from.nodes, until.nodes);
+        if effort.sweeps == 0 || first >= end {
+            for i in first.max(exact)..end {
                 look(surface, sheet, i);
             }
             return;
         }
-        let (edges, quads) = (&sheet.edges[from.edges..], &sheet.quads[from.quads..]);
+        let (edges, quads) = (&sheet.edges[from.edges..until.edges], &sheet.quads[from.quads..until.quads]);
         let scales = Scales {
             width: sheet.width as f32,
             height: sheet.height as f32,
             squareness: effort.squareness as f32,
         };
         let low = self.columns.take(edges, quads, first, &mut self.loose);
-        let span = Span { low, first, count: sheet.len() - first, origin: sheet.point[first] };
+        let span = Span { low, first, count: end - first, origin: sheet.point[first] };
         self.nodes.clear();
         self.nodes.resize(span.count.div_ceil(4), Nodes::default());
         self.take(sheet, &span);
@@ -226,7 +243,7 @@ impl Relaxer {
             if sweep.is_multiple_of(REFRESH) {
                 if sweep > 0 {
                     self.commit(sheet, &span, ends.range);
-                    for i in first..sheet.len() {
+                    for i in first..end {
                         look(surface, sheet, i);
                     }
                     self.take(sheet, &span);
@@ -246,11 +263,11 @@ impl Relaxer {
             self.step(span.fringe(), momentum, LONGEST * scales.height, ends.range);
         }
         self.commit(sheet, &span, ends.range);
-        let settled = first.max(exact).min(sheet.len());
+        let settled = first.max(exact).min(end);
         for (point, own) in sheet.point[first..settled].iter_mut().zip(&self.point[span.fringe()..]) {
             *point = span.origin + own.xyz().as_dvec3();
         }
-        for i in settled..sheet.len() {
+        for i in settled..end {
             look(surface, sheet, i);
         }
     }
@@ -258,11 +275,11 @@ impl Relaxer {
     /// Takes up points and derivatives; the nodes have gone no way yet.
     fn take(&mut self, sheet: &Sheet, span: &Span) {
         self.point.clear();
-        self.point.extend(sheet.point[span.low..].iter().map(|point| span.local(*point)));
+        self.point.extend(sheet.point[span.low..span.end()].iter().map(|point| span.local(*point)));
         self.point.resize(span.fringe() + 4 * self.nodes.len(), Vec4::ZERO);
         let vector = |d: &DVec3| d.as_vec3().extend(0.0);
-        let free = sheet.du[span.first..].chunks(4).zip(sheet.dv[span.first..].chunks(4));
-        let us = sheet.u[span.first..].chunks(4);
+        let free = sheet.du[span.first..span.end()].chunks(4).zip(sheet.dv[span.first..span.end()].chunks(4));
+        let us = sheet.u[span.first..span.end()].chunks(4);
         for ((nodes, (du, dv)), u) in self.nodes.iter_mut().zip(free).zip(us) {
             if let (Ok(du), Ok(dv), Ok(u)) = (<&[_; 4]>::try_from(du), <&[_; 4]>::try_from(dv), u.try_into())
             {
@@ -277,7 +294,8 @@ impl Relaxer {
 
     /// Writes the way of the nodes into the sheet.
     fn commit(&self, sheet: &mut Sheet, span: &Span, [low, high]: [f64; 2]) {
-        let places = sheet.u[span.first..].chunks_mut(4).zip(sheet.v[span.first..].chunks_mut(4));
+        let free = span.first..span.end();
+        let places = sheet.u[free.clone()].chunks_mut(4).zip(sheet.v[free].chunks_mut(4));
         for ((us, vs), nodes) in places.zip(&self.nodes) {
             let [by_u, by_v] = nodes.way.map(|way| way.to_array());
             for (lane, (u, v)) in us.iter_mut().zip(vs).enumerate() {

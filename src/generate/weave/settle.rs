@@ -1,7 +1,7 @@
 //! When what is woven settles: the newest rows after each, the whole in the end, and its top where that is ragged.
 
 use super::{Outcome, Weaver};
-use crate::generate::relax::{Brink, Effort, Ends, Firm, Mark};
+use crate::generate::relax::{Brink, Effort, Ends, Firm, Mark, Stretch};
 use crate::generate::score::{FEW_OF, Score, any_inverted, inverted};
 use crate::generate::top::{self, Top};
 use crate::generate::tries::Judge;
@@ -15,6 +15,10 @@ const OPENINGS: u32 = 4;
 const FEW_SWEEPS: u32 = 5;
 /// Parts of so many stitches have few tries.
 const MANY: usize = 50_000;
+/// Large parts settle by bands of rows, so many nodes at a time, which the processor keeps near; and each band with so many rows
+/// of the next, which then settle once more: what hangs over its edge is far enough away.
+const BAND: usize = 1 << 16;
+const OVERLAP: usize = 10;
 /// Sweeps over the whole after which a try is judged.
 const FIRST_SWEEPS: u32 = 4;
 
@@ -78,7 +82,8 @@ impl Weaver<'_> {
         // What lies two rows down hardly moves any more.
         let newest = self.marks[self.marks.len().saturating_sub(1)].nodes;
         let exact = if self.quick() { usize::MAX } else { newest };
-        self.relaxer.relax(self.surface, &mut self.sheet, mark, exact, effort, ends);
+        let rows = Stretch::since(mark, &self.sheet);
+        self.relaxer.relax(self.surface, &mut self.sheet, rows, exact, effort, ends);
     }
 
     /// Settles the whole; points are left to first order, if they are not the last.
@@ -86,13 +91,24 @@ impl Weaver<'_> {
         if sweeps == 0 {
             return;
         }
-        let mark = self.free(Mark::default());
         let effort = Effort { sweeps, squareness: self.options.squareness };
         let top = if level { top::first(&self.ring) } else { usize::MAX };
         let level = Some(Brink { rows: self.rows, top, firm: Firm::No, tail: self.tail });
         let ends = Ends { level, ..self.ends() };
         let exact = if self.quick() { 0 } else { usize::MAX };
-        self.relaxer.relax(self.surface, &mut self.sheet, mark, exact, effort, ends);
+        let end = Mark::of(&self.sheet);
+        let mut first = 0;
+        loop {
+            let from = self.free(self.marks.get(first).copied().filter(|_| first > 0).unwrap_or_default());
+            let next = self.marks.partition_point(|mark| mark.nodes < from.nodes + BAND);
+            let until = self.marks.get(next + OVERLAP).copied().unwrap_or(end);
+            let band = Stretch { from, until };
+            self.relaxer.relax(self.surface, &mut self.sheet, band, exact, effort, ends);
+            if until.nodes == end.nodes {
+                break;
+            }
+            first = next;
+        }
     }
 
     /// Settles the last rows once more where they end ragged.
