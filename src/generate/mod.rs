@@ -382,12 +382,13 @@ impl<'s> Ground<'s> {
         let free = if self.poles[0].is_some() { 0 } else { start };
         let top = sheet.len() - counts[counts.len() - 1] as usize;
         let all = Stretch::since(Mark { nodes: free, ..Mark::default() }, &sheet);
+        let nodes = sheet.len();
         Relaxer::default().relax(
             surface,
             &mut sheet,
             all,
             0,
-            Effort { sweeps: options.sweeps, squareness: options.squareness },
+            Effort { sweeps: options.sweeps_over(nodes), squareness: options.squareness },
             Ends {
                 range: self.range,
                 ring: self.poles[0].map(|pole| (pole, start)),

@@ -33,7 +33,12 @@ impl Weaver<'_> {
                 return Outcome::Outdone;
             }
         }
-        self.settle_all(self.options.sweeps - first, judge.level);
+        // Tries of their own, on harsh parts and against inverted tiles, have sweeps of their own.
+        let sweeps = match judge.level && judge.tail {
+            true => self.options.sweeps_over(self.sheet.len()),
+            false => self.options.sweeps,
+        };
+        self.settle_all(sweeps - first, judge.level);
         if self.options.sweeps == 0 {
             return Outcome::Done;
         }
