@@ -392,7 +392,7 @@ impl<'s> Ground<'s> {
             Ends {
                 range: self.range,
                 ring: self.poles[0].map(|pole| (pole, start)),
-                level: Some(Brink { rows, top, firm: Firm::No, tail: true }),
+                level: Some(Brink { rows, lag: 0.0, top, firm: Firm::No, tail: true }),
                 opens: false,
             },
         );
@@ -415,7 +415,7 @@ impl<'s> Ground<'s> {
             first_row::lay(surface, &mut sheet, places.into_iter(), rows);
         }
         let start = sheet.len();
-        let mut weaver = Weaver::new(surface, rows, options, sheet, self.poles[0], self.range, most);
+        let mut weaver = Weaver::new(surface, rows, options, sheet, self.poles, self.range, most);
         match weaver.run(judge, |done, total| sink.step(done, total)) {
             Outcome::Done => {
                 let spread = weaver.spread();

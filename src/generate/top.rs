@@ -28,6 +28,8 @@ const TIMES: usize = 3;
 pub(super) struct Top<'w> {
     pub surface: &'w dyn ParametricSurface,
     pub rows: &'w Rows,
+    /// By how many rows it lies behind its helix.
+    pub lag: f64,
     /// The open loops, and those under the last few: see [`open`].
     pub ring: &'w [NodeId],
     /// Where the last rows begin.
@@ -45,7 +47,7 @@ impl Top<'_> {
     pub(super) fn settle(&self, relaxer: &mut Relaxer, sheet: &mut Sheet) {
         let many = sheet.len() > MANY;
         let firm = if many { Firm::Closely } else { Firm::Yes };
-        let brink = Brink { rows: self.rows, top: first(self.ring), firm, tail: self.tail };
+        let brink = Brink { rows: self.rows, lag: self.lag, top: first(self.ring), firm, tail: self.tail };
         let ends = Ends { level: Some(brink), ..self.ends };
         let effort = Effort { sweeps: SWEEPS, squareness: self.squareness };
         let ragged = match self.quick {
@@ -81,9 +83,9 @@ impl Top<'_> {
 pub(super) const SLIVER: f64 = 1.0 / 6.0;
 
 /// The open loops, and those that will be open where the last few stitches are taken off again.
-pub(super) fn open(sheet: &Sheet, rows: &Rows, ring: &[NodeId]) -> Vec<NodeId> {
+pub(super) fn open(sheet: &Sheet, end: f64, ring: &[NodeId]) -> Vec<NodeId> {
     let mut open = ring.to_vec();
-    let late = |work: &&Work| sheet.v[work.top[1] as usize] >= rows.count - SLIVER;
+    let late = |work: &&Work| sheet.v[work.top[1] as usize] >= end - SLIVER;
     for work in sheet.main.iter().rev().take_while(late) {
         open.extend(&work.base[..if work.base[0] == work.base[1] { 1 } else { 2 }]);
     }
@@ -97,10 +99,19 @@ pub(super) fn first(ring: &[NodeId]) -> usize {
 
 /// Rows between the highest and the lowest open loop, each against its place on the helix.
 pub(super) fn spread(sheet: &Sheet, rows: &Rows, ring: &[NodeId]) -> f64 {
-    let mut knot = rows.count as usize;
-    let off = ring.iter().map(|id| *id as usize).map(|i| sheet.v[i] - rows.tau(sheet.u[i], &mut knot));
+    let off = lags(sheet, rows, ring);
     let (low, high) = off.fold((f64::MAX, f64::MIN), |(low, high), off| (low.min(off), high.max(off)));
     (high - low).max(0.0)
+}
+
+/// Rows by which each of the open loops lies behind its place on the helix.
+pub(super) fn lags<'s>(
+    sheet: &'s Sheet,
+    rows: &'s Rows,
+    ring: &'s [NodeId],
+) -> impl Iterator<Item = f64> + 's {
+    let mut knot = rows.count as usize;
+    ring.iter().map(|id| *id as usize).map(move |i| sheet.v[i] - rows.tau(sheet.u[i], &mut knot))
 }
 
 /// Where the last nodes were.

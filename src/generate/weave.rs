@@ -32,6 +32,9 @@ const LEVELING_MOST: f64 = 0.313;
 const EAGER: f64 = 0.328;
 /// Share of the usual price of short-row ends in the last two rows, so that the top comes out level.
 const LAST_ROWS_PRICE: f64 = 0.4;
+const LAST_ROWS: f64 = 2.0;
+/// A lag of the last row behind the helix that is worth more stitches, in rows.
+const LEAST_LAG: f64 = 0.15;
 /// Stitches more that a pass of a short row may be off before it is shaped, with full ease.
 const PLAIN_PASSES: f64 = 1.5;
 /// Stitches more that it may be off where an increase would stand on one of the pass below.
@@ -73,6 +76,9 @@ pub(crate) struct Weaver<'s> {
     marker: Marker,
     range: [f64; 2],
     part_batch: bool,
+    /// By how many rows the work lies behind its helix at an open end: so much farther it goes on.
+    lag: f64,
+    ends_open: bool,
     opens: bool,
     tail: bool,
     ridge: Ridge,
@@ -93,7 +99,7 @@ impl<'s> Weaver<'s> {
         rows: &'s Rows,
         options: &'s Options,
         sheet: Sheet,
-        ring_center: Option<DVec3>,
+        poles: [Option<DVec3>; 2],
         range: [f64; 2],
         most: usize,
     ) -> Self {
@@ -110,10 +116,12 @@ impl<'s> Weaver<'s> {
             last_wale: None,
             last_foot: None,
             ends: Stacked::default(),
-            ring_center: ring_center.map(|pole| (pole, first_row)),
+            ring_center: poles[0].map(|pole| (pole, first_row)),
             marker: Marker::new(options.ease() > 0.0, first_row),
             range,
             part_batch: false,
+            lag: 0.0,
+            ends_open: poles[1].is_none(),
             opens: false,
             tail: true,
             ridge: Ridge::Usual,
@@ -134,6 +142,7 @@ impl<'s> Weaver<'s> {
         (self.opens, self.tail, self.ridge) = (judge.opens, judge.tail, judge.ridge);
         loop {
             self.look_for_missing();
+            self.look_for_lag();
             let length = self.batch_length();
             self.part_batch = length < self.ring.len();
             self.marks.push(Mark::of(&self.sheet));
@@ -173,6 +182,20 @@ impl<'s> Weaver<'s> {
     /// Rows between the highest and the lowest open loop, each against its place on the helix.
     pub(crate) fn spread(&self) -> f64 {
         top::spread(&self.sheet, self.rows, &self.ring)
+    }
+
+    /// The row of the helix at which the work ends.
+    pub(crate) fn end(&self) -> f64 {
+        self.rows.count + self.lag
+    }
+
+    /// How far behind its helix the ring lies, once that is worth another part of a row.
+    fn look_for_lag(&mut self) {
+        if !self.ends_open || self.options.paper || self.marks.len() as f64 + LAST_ROWS < self.rows.count {
+            return;
+        }
+        let lag = top::lags(&self.sheet, self.rows, &self.ring).sum::<f64>() / self.ring.len() as f64;
+        self.lag = if lag > LEAST_LAG { lag.min(1.0) } else { 0.0 };
     }
 
     /// Missing height at a node against its place on the helix, in stitch heights.
@@ -221,7 +244,7 @@ impl<'s> Weaver<'s> {
             if i > reach {
                 neighbors -= self.missing[i - reach - 1];
             }
-            if self.sheet.v[base as usize] + 1.0 > self.rows.count {
+            if self.sheet.v[base as usize] + 1.0 > self.end() {
                 return i;
             }
             let left = if i >= reach {
@@ -370,7 +393,7 @@ impl<'s> Weaver<'s> {
         let greatest = (self.options.max_short_row * size) as usize;
         let (activation, tolerance) = (self.options.activation, self.options.tolerance);
         let mut rules = Rules::from_thresholds(activation, tolerance, least, greatest);
-        if self.marks.len() as f64 > self.rows.count - 2.0 {
+        if self.marks.len() as f64 > self.rows.count - LAST_ROWS {
             rules.end_price *= LAST_ROWS_PRICE;
         }
         rules.end_price *= 1.0 + FEWER_ENDS * self.options.ease();

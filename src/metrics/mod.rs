@@ -110,7 +110,8 @@ pub struct Skew {
 /// How level the last round ends, in rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Level {
-    /// Mean height that is missing below the helix; negative where the work stands above it.
+    /// Mean height that is missing below where the last turn of a helix to the rim lies, at a closed end below the helix;
+    /// negative where the work stands above it.
     pub missing: f64,
     /// Highest minus lowest place of the last round against the helix.
     pub spread: f64,

@@ -93,7 +93,7 @@ impl Sampler {
         self.lengths(surface, mesh);
         self.skew(mesh);
         self.cover(surface, ends, mesh);
-        self.level(mesh);
+        self.level(surface, ends[1], mesh);
     }
 
     fn lengths(&mut self, surface: &dyn ParametricSurface, mesh: &Mesh<'_>) {
@@ -184,7 +184,7 @@ impl Sampler {
         self.covering += mesh.nodes.len() - first - chains;
     }
 
-    fn level(&mut self, mesh: &Mesh<'_>) {
+    fn level(&mut self, surface: &dyn ParametricSurface, end: End, mesh: &Mesh<'_>) {
         // The helix row of a loop is its winding along the yarn, where it is unwrapped step by step.
         let mut winding = Vec::with_capacity(mesh.nodes.len());
         let mut turns = 0.0;
@@ -198,17 +198,31 @@ impl Sampler {
             before = Some(node.v);
             winding.push(turns);
         }
+        // The helix begins anywhere around the tube: the first row tells where.
+        let start = mesh.start.max(1);
+        let first = mesh.nodes.iter().zip(&winding).take(start);
+        let begin = first.map(|(node, row)| row - node.tau).sum::<f64>() / start as f64;
         let (mut low, mut high) = (f64::MAX, f64::MIN);
         for id in &mesh.open {
             let (Some(node), Some(row)) = (mesh.node(*id), winding.get(*id as usize)) else { continue };
-            let missing = row - node.tau;
-            low = low.min(missing);
-            high = high.max(missing);
-            self.level.push(missing);
+            let lag = row - node.tau;
+            low = low.min(lag);
+            high = high.max(lag);
+            // To a rim the last turn of a helix rises by a row; a pole may be the middle of a seam.
+            self.level.push(match end {
+                End::Open => self.rows_to_end(surface, node) - 0.5,
+                End::Closed => lag - begin,
+            });
         }
         if high > low {
             self.spread = self.spread.max(high - low);
         }
+    }
+
+    /// Rows from a loop to the end of the surface, straight along it.
+    fn rows_to_end(&self, surface: &dyn ParametricSurface, node: &Node) -> f64 {
+        let end = Node { u: 1.0, position: surface.point(1.0, node.v), ..*node };
+        along(surface, node, &end, STEPS) * (1.0 - node.u).signum() / self.gauge.height
     }
 
     /// Sums up.

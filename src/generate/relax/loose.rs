@@ -97,7 +97,7 @@ impl Relaxer {
         if ends.opens || ends.level.is_some() {
             self.stiffen_narrow(stiffness, sheet, span, scales);
         }
-        if let Some(Brink { rows, top, firm, .. }) = ends.level {
+        if let Some(Brink { rows, lag, top, firm, .. }) = ends.level {
             let pull = match firm {
                 Firm::No => PULL,
                 Firm::Yes => FIRM_PULL,
@@ -108,7 +108,8 @@ impl Relaxer {
                 if !ends.pulls_level(sheet, i) {
                     continue;
                 }
-                if (rows.tau(sheet.u[i], &mut knot) - sheet.v[i]).abs() > pull.far {
+                let row = sheet.v[i] - lag;
+                if (rows.tau(sheet.u[i], &mut knot) - row).abs() > pull.far {
                     continue;
                 }
                 let (du, dv) = (sheet.du[i], sheet.dv[i]);
@@ -117,12 +118,12 @@ impl Relaxer {
                 add_outer(&mut stiffness[i - span.low], du.normalize_or_zero().as_vec3a(), weight as f32);
                 let across = du - dv * (du.dot(dv) / dv.length_squared().max(1e-30));
                 let dual = across / across.length_squared().max(1e-30);
-                let slack = rows.at(sheet.v[i] + pull.slack) - rows.at(sheet.v[i]);
+                let slack = rows.at(row + pull.slack) - rows.at(row);
                 self.level.push(Level {
                     slack: slack as f32,
                     node: i - span.first,
                     dual: (dual * (weight * du.length_squared())).as_vec3().extend(0.0),
-                    way: (rows.at(sheet.v[i] + LEVEL_SHIFT) - sheet.u[i]) as f32,
+                    way: (rows.at(row + LEVEL_SHIFT) - sheet.u[i]) as f32,
                 });
             }
         }

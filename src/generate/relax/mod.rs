@@ -82,6 +82,8 @@ pub(crate) struct Ends<'r> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Brink<'r> {
     pub rows: &'r Rows,
+    /// By how many rows they lie behind their helix.
+    pub lag: f64,
     /// Where these tops begin; with none, the sweeps are final and there is no pull.
     pub top: usize,
     pub firm: Firm,
@@ -374,7 +376,7 @@ impl Ends<'_> {
     fn pulls_level(&self, sheet: &Sheet, i: usize) -> bool {
         self.level.is_some_and(|brink| {
             let turn = if brink.firm == Firm::No { LAST_TURN } else { LAST_TURNS };
-            i >= brink.top && sheet.v[i] >= brink.rows.count - turn
+            i >= brink.top && sheet.v[i] >= brink.rows.count + brink.lag - turn
         })
     }
 }

@@ -98,7 +98,7 @@ impl Weaver<'_> {
         }
         let effort = Effort { sweeps, squareness: self.options.squareness };
         let top = if level { top::first(&self.ring) } else { usize::MAX };
-        let level = Some(Brink { rows: self.rows, top, firm: Firm::No, tail: self.tail });
+        let level = Some(Brink { rows: self.rows, lag: self.lag, top, firm: Firm::No, tail: self.tail });
         let ends = Ends { level, ..self.ends() };
         let exact = if self.quick() { 0 } else { usize::MAX };
         let end = Mark::of(&self.sheet);
@@ -120,10 +120,11 @@ impl Weaver<'_> {
     fn settle_top(&mut self) {
         let last = self.marks.len().saturating_sub(top::ROWS);
         let mark = self.free(self.marks.get(last).copied().unwrap_or_default());
-        let ring = &top::open(&self.sheet, self.rows, &self.ring);
+        let ring = &top::open(&self.sheet, self.end(), &self.ring);
         let (surface, rows, ends) = (self.surface, self.rows, self.ends());
         let (squareness, quick, tail) = (self.options.squareness, self.quick(), self.tail);
-        let top = Top { surface, rows, ring, mark, ends, squareness, quick, tail };
+        let lag = self.lag;
+        let top = Top { surface, rows, lag, ring, mark, ends, squareness, quick, tail };
         top.settle(&mut self.relaxer, &mut self.sheet);
     }
 }
