@@ -10,14 +10,23 @@ pub fn keys<T: DeserializeOwned>() -> &'static [&'static str] {
     keys
 }
 
-/// Splits `KEY=VALUE`. The value is a TOML boolean, number or array of such where it reads as one, else the text itself.
+/// Splits `KEY=VALUE`. The value is a TOML boolean, number or array of such where it reads as one, a number where it is
+/// written as people do (`.5`), else the text itself.
 pub fn parse(text: &str) -> Option<(String, toml::Value)> {
     let (key, value) = text.split_once('=')?;
     let (key, value) = (key.trim(), value.trim());
     if key.is_empty() {
         return None;
     }
-    Some((key.to_owned(), scalar(value).unwrap_or_else(|| toml::Value::String(value.to_owned()))))
+    let text = || toml::Value::String(value.to_owned());
+    Some((key.to_owned(), scalar(value).or_else(|| loose_number(value)).unwrap_or_else(text)))
+}
+
+/// A number without a digit before or behind its point.
+fn loose_number(text: &str) -> Option<toml::Value> {
+    let digits = |c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-');
+    let number = text.chars().all(digits).then(|| text.parse().ok()).flatten();
+    number.map(toml::Value::Float)
 }
 
 fn scalar(text: &str) -> Option<toml::Value> {
@@ -85,6 +94,9 @@ mod tests {
         assert_eq!(value("a=true"), toml::Value::Boolean(true));
         assert_eq!(value("a = 2"), toml::Value::Integer(2));
         assert_eq!(value("a=0.5"), toml::Value::Float(0.5));
+        assert_eq!(value("a=.5"), toml::Value::Float(0.5));
+        assert_eq!(value("a=-2."), toml::Value::Float(-2.0));
+        assert_eq!(value("a=1.2.3"), toml::Value::String("1.2.3".into()));
         assert_eq!(value("a=\"2\""), toml::Value::String("2".into()));
         assert_eq!(value("a=5.5 mm"), toml::Value::String("5.5 mm".into()));
         assert_eq!(value("a=b=c"), toml::Value::String("b=c".into()));

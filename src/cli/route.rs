@@ -132,7 +132,20 @@ fn named<T: Copy>(words: &[(&str, T)], name: Option<&str>) -> Option<T> {
 }
 
 fn wrong_value(key: &str, error: &toml::de::Error) -> Failure {
-    Failure::usage(format!("--set {key}: {}", error.message().lines().next().unwrap_or("wrong value")))
+    let message = error.message().lines().next().unwrap_or("wrong value");
+    let message = ["invalid type: ", "invalid value: "]
+        .into_iter()
+        .find_map(|what| message.strip_prefix(what))
+        .unwrap_or(message);
+    // The reader names a type as the language does.
+    let message = match message.rsplit_once("expected ") {
+        Some((found, "f64" | "f32")) => format!("{found}expected a number, as 0.5"),
+        Some((found, "u8" | "u16" | "u32" | "u64" | "usize")) => {
+            format!("{found}expected a whole number, 0 or more")
+        }
+        _ => message.to_owned(),
+    };
+    Failure::usage(format!("--set {key}: {message}"))
 }
 
 fn unknown(key: &str, generator: &[&'static str], targets: &[&'static Target]) -> Failure {

@@ -35,7 +35,7 @@ Examples:
 
 #[test]
 fn wrong_usage_is_status_2_with_a_way_out() {
-    let cases: [(&[&str], &str); 13] = [
+    let cases: [(&[&str], &str); 14] = [
         (&["biuld"], "build"),
         (&["build"], "<INPUT>"),
         (&["build", BALL, "--to", "crochte"], "crochet"),
@@ -44,7 +44,8 @@ fn wrong_usage_is_status_2_with_a_way_out() {
         (&["build", "x.tmol"], "did you mean `.toml`?"),
         (&["build", "-"], "--from"),
         (&["build", BALL, "--set", "short-row=false"], "did you mean `short-rows`?"),
-        (&["build", BALL, "--set", "sweeps=many"], "sweeps"),
+        (&["build", BALL, "--set", "sweeps=many"], "expected a whole number"),
+        (&["build", BALL, "--set", "squareness=much"], "expected a number, as 0.5"),
         (&["build", BALL, "--set", "sweeps"], "KEY=VALUE"),
         (&["build", BALL, "--gauge", "2.5"], "2.5mmx2.5mm"),
         (&["build", BALL, "--to", "crochet", "--to", "json"], "-o FILE"),
