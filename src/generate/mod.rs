@@ -53,6 +53,8 @@ const OVERHANG: [f64; 2] = [-0.02, 1.06];
 /// At a pole they keep this share of the first row's distance.
 const POLE_DISTANCE: f64 = 0.3;
 
+/// Even rounds toward a pole are all shaped, and wales over shapings slant: by so much of a row they come out lower.
+const SLANT: f64 = 0.15;
 /// Rows by which a given first row counts as higher, for each turn that a try would turn another one by.
 const LIFT: f64 = 1.0;
 
@@ -177,12 +179,14 @@ fn lay_on(
     let most = (3.0 * expected) as usize + 10_000;
     let harsh = rows.is_harsh();
     let even_rounds = |options: &Options, sink: &Sink<'_>| {
-        let ground = Ground::new(surface, ends, &rows, gauge, options);
+        let closed = ends.iter().filter(|end| **end == End::Closed).count();
+        let lifted = rows.with_one_more(SLANT * closed as f64);
+        let ground = Ground::new(surface, ends, lifted.as_ref().unwrap_or(&rows), gauge, options);
         let (mut sheet, start) = ground.lay_evenly(sink)?;
         if patches.is_some() {
             sheet.put_on(exact, turned.by);
         }
-        Some(Laid { sheet, start, spread: 0.0, turn: turned.by, lifted: None })
+        Some(Laid { sheet, start, spread: 0.0, turn: turned.by, lifted })
     };
     let laid = if even { even_rounds(&options.hurried(), sink) } else { None };
     let laid = laid.or_else(|| {

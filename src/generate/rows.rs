@@ -25,8 +25,9 @@ pub(crate) struct Rows {
     knots: Vec<f64>,
     /// Table rows per row of the pattern.
     scale: f64,
-    /// Table rows before row 0: see [`lead`].
+    /// Table rows before row 0 and behind the last: see [`lead`].
     lead: f64,
+    tail: f64,
     /// Farthest against closest distance of two rows, on average.
     unevenness: f64,
     /// Number of rows; whole.
@@ -66,7 +67,16 @@ impl Rows {
         let total = last as f64 - 1.0 + partial;
         let count = (total - lead - tail).round().max(1.0);
         let scale = total / (count + lead + tail);
-        (total >= 0.75).then_some(Self { knots, scale, lead, unevenness, count })
+        (total >= 0.75).then_some(Self { knots, scale, lead, tail, unevenness, count })
+    }
+
+    /// One row more, closer together, where so much more than there is would be rounded up to it; else `None`.
+    pub(crate) fn with_one_more(&self, share: f64) -> Option<Self> {
+        let off_ends = self.lead + self.tail;
+        let total = self.scale * (self.count + off_ends);
+        let count = (total - off_ends + share).round().max(1.0);
+        let scale = total / (count + off_ends);
+        (count > self.count).then(|| Self { knots: self.knots.clone(), scale, count, ..*self })
     }
 
     /// True where rows lie far closer on one side than on the other nearly everywhere, as in a sharp bend.

@@ -8,7 +8,7 @@ use picot::diag::{Code, Sink};
 use picot::generate::{Options, generate};
 use picot::ir::Gauge;
 use picot::metrics::{Measure, measure};
-use picot::shape::{Sweep, Tube, TubeSpec};
+use picot::shape::{End, Sweep, Tube, TubeSpec, analytic::Sphere};
 
 /// A tube along a planar curve of 40 to 140 mm, with radii of 4 to 20 mm, and the greatest product of curvature and radius.
 fn planar(random: &mut Random) -> (TubeSpec, f64) {
@@ -37,7 +37,7 @@ fn lay(spec: &TubeSpec, gauge: Gauge) -> Option<Measure> {
 #[test]
 fn planar_tubes_fit_and_none_has_an_inverted_tile() {
     let mut random = Random(7);
-    let (mut lengths, mut skews) = (Vec::new(), Vec::new());
+    let (mut lengths, mut skews, mut short) = (Vec::new(), Vec::new(), Vec::new());
     while lengths.len() < 300 {
         let (spec, bend) = planar(&mut random);
         if bend > 0.8 {
@@ -48,13 +48,31 @@ fn planar_tubes_fit_and_none_has_an_inverted_tile() {
         assert_eq!(measure.inverted_tiles, 0, "number {}, bend {bend:.2}", lengths.len());
         lengths.push(measure.length_error.chord.mean_abs);
         skews.push(measure.skew.all.mean);
+        short.push(measure.level.missing.abs());
     }
-    lengths.sort_by(f64::total_cmp);
-    skews.sort_by(f64::total_cmp);
+    for figures in [&mut lengths, &mut skews, &mut short] {
+        figures.sort_by(f64::total_cmp);
+    }
     let at = |values: &[f64], share: usize| values[values.len() * share / 100];
-    let figures = [at(&lengths, 50), at(&lengths, 90), at(&skews, 50), at(&skews, 90)];
-    let bounds = [0.033, 0.042, 0.073, 0.093];
+    // The last: rows by which they end off the rim.
+    let figures = [at(&lengths, 50), at(&lengths, 90), at(&skews, 50), at(&skews, 90), at(&short, 90)];
+    let bounds = [0.032, 0.042, 0.072, 0.093, 0.25];
     assert!(figures.iter().zip(bounds).all(|(figure, bound)| *figure <= bound), "{figures:?}");
+}
+
+/// Even rounds toward a pole are all shaped, and their slanting wales come out lower: there is a round more for that.
+#[test]
+fn balls_are_neither_long_nor_short() {
+    let mut means = Vec::new();
+    for k in 0..24 {
+        let radius = 12.0 + 0.5 * f64::from(k);
+        let ball = Tube::new("ball", Box::new(Sphere { radius }), [End::Closed; 2]);
+        let gauge = Gauge::new(2.5, 2.5);
+        let graph = generate(&ball, &gauge, &Options::default(), &mut Sink::new()).unwrap();
+        means.push(measure(&ball, &gauge, &graph).length_error.chord.mean);
+    }
+    let mean = means.iter().sum::<f64>() / means.len() as f64;
+    assert!(mean.abs() < 0.003 && means.iter().all(|mean| mean.abs() < 0.02), "{mean} {means:?}");
 }
 
 /// Rounds of one or two stitches are no tube.
