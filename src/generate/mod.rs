@@ -53,8 +53,6 @@ const OVERHANG: [f64; 2] = [-0.02, 1.06];
 /// At a pole they keep this share of the first row's distance.
 const POLE_DISTANCE: f64 = 0.3;
 
-/// Even rounds toward a pole are all shaped, and wales over shapings slant: by so much of a row they come out lower.
-const SLANT: f64 = 0.15;
 /// Rows by which a given first row counts as higher, for each turn that a try would turn another one by.
 const LIFT: f64 = 1.0;
 
@@ -177,10 +175,8 @@ fn lay_on(
     };
     sink.stage("stitches");
     let most = (3.0 * expected) as usize + 10_000;
-    let harsh = rows.is_harsh();
     let even_rounds = |options: &Options, sink: &Sink<'_>| {
-        let closed = ends.iter().filter(|end| **end == End::Closed).count();
-        let lifted = rows.with_one_more(SLANT * closed as f64);
+        let lifted = rows.of_even(ends);
         let ground = Ground::new(surface, ends, lifted.as_ref().unwrap_or(&rows), gauge, options);
         let (mut sheet, start) = ground.lay_evenly(sink)?;
         if patches.is_some() {
@@ -190,7 +186,7 @@ fn lay_on(
     };
     let laid = if even { even_rounds(&options.hurried(), sink) } else { None };
     let laid = laid.or_else(|| {
-        let part = Part { expected, given: first.is_some(), harsh };
+        let part = Part { expected, given: first.is_some(), harsh: rows.is_harsh() };
         let lay = |options: &Options, turn: f64, judge: Judge, sink: &Sink<'_>| {
             // Where the place of the first row is given, its height is varied.
             let lifted = first.and_then(|_| Rows::new(surface, [leads[0] + LIFT * turn, leads[1]], gauge));
@@ -227,7 +223,7 @@ fn lay_on(
     range[0] = first.unwrap_or_default().iter().fold(range[0], |least, foot| least.min(foot.u));
     // What is to be seen as it was laid stays so.
     if !options.paper && options.sweeps > 0 {
-        let close = stout.is_some() || harsh;
+        let close = stout.is_some() || rows.is_harsh();
         let untangler = Untangler { on: exact, outside, turn, range, start, pole: poles[0], close };
         let [before, after] = untangler.untangle(&mut sheet);
         if even && before > 0 && (after > 0 || !tries::is_sound(&sheet)) {

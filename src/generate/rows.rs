@@ -16,6 +16,8 @@ const MOST_AHEAD: f64 = 1.15;
 const LONG_ROUND: f64 = 60.0;
 /// Farthest against closest distance of two rows, on average, over which a surface is harsh.
 const HARSH: f64 = 1.72;
+/// Even rounds toward a pole are all shaped, and wales over shapings slant: by so much of a row they come out lower.
+const SLANT: f64 = 0.15;
 /// Most rows that are tabulated, against surfaces whose derivative by u is next to nothing.
 const MAX_ROWS: usize = 2_000_000;
 
@@ -70,11 +72,12 @@ impl Rows {
         (total >= 0.75).then_some(Self { knots, scale, lead, tail, unevenness, count })
     }
 
-    /// One row more, closer together, where so much more than there is would be rounded up to it; else `None`.
-    pub(crate) fn with_one_more(&self, share: f64) -> Option<Self> {
+    /// One row more, closer together, where even rounds that close would else come out short; `None` elsewhere.
+    pub(crate) fn of_even(&self, ends: [End; 2]) -> Option<Self> {
+        let lost: f64 = ends.map(|end| if end == End::Closed { SLANT } else { 0.0 }).iter().sum();
         let off_ends = self.lead + self.tail;
         let total = self.scale * (self.count + off_ends);
-        let count = (total - off_ends + share).round().max(1.0);
+        let count = (total - off_ends + lost).round().max(1.0);
         let scale = total / (count + off_ends);
         (count > self.count).then(|| Self { knots: self.knots.clone(), scale, count, ..*self })
     }

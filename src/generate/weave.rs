@@ -19,7 +19,7 @@ use super::stout::LEAST_LOOPS;
 use super::top;
 use super::tries::Judge;
 use crate::ir::{NodeId, Stitch};
-use crate::shape::ParametricSurface;
+use crate::shape::{End, ParametricSurface};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -78,7 +78,7 @@ pub(crate) struct Weaver<'s> {
     part_batch: bool,
     /// By how many rows the work lies behind its helix at an open end: so much farther it goes on.
     lag: f64,
-    ends_open: bool,
+    end: End,
     opens: bool,
     tail: bool,
     ridge: Ridge,
@@ -121,7 +121,7 @@ impl<'s> Weaver<'s> {
             range,
             part_batch: false,
             lag: 0.0,
-            ends_open: poles[1].is_none(),
+            end: if poles[1].is_some() { End::Closed } else { End::Open },
             opens: false,
             tail: true,
             ridge: Ridge::Usual,
@@ -185,13 +185,16 @@ impl<'s> Weaver<'s> {
     }
 
     /// The row of the helix at which the work ends.
-    pub(crate) fn end(&self) -> f64 {
+    pub(crate) fn last_row(&self) -> f64 {
         self.rows.count + self.lag
     }
 
     /// How far behind its helix the ring lies, once that is worth another part of a row.
     fn look_for_lag(&mut self) {
-        if !self.ends_open || self.options.paper || self.marks.len() as f64 + LAST_ROWS < self.rows.count {
+        if self.end == End::Closed
+            || self.options.paper
+            || self.marks.len() as f64 + LAST_ROWS < self.rows.count
+        {
             return;
         }
         let lag = top::lags(&self.sheet, self.rows, &self.ring).sum::<f64>() / self.ring.len() as f64;
@@ -244,7 +247,7 @@ impl<'s> Weaver<'s> {
             if i > reach {
                 neighbors -= self.missing[i - reach - 1];
             }
-            if self.sheet.v[base as usize] + 1.0 > self.end() {
+            if self.sheet.v[base as usize] + 1.0 > self.last_row() {
                 return i;
             }
             let left = if i >= reach {

@@ -34,10 +34,8 @@ impl Weaver<'_> {
             }
         }
         // Tries of their own, on harsh parts and against inverted tiles, have sweeps of their own.
-        let sweeps = match judge.level && judge.tail {
-            true => self.options.sweeps_over(self.sheet.len()),
-            false => self.options.sweeps,
-        };
+        let usual = judge.level && judge.tail;
+        let sweeps = if usual { self.options.sweeps_over(self.sheet.len()) } else { self.options.sweeps };
         self.settle_all(sweeps - first, judge.level);
         if self.options.sweeps == 0 {
             return Outcome::Done;
@@ -120,7 +118,7 @@ impl Weaver<'_> {
     fn settle_top(&mut self) {
         let last = self.marks.len().saturating_sub(top::ROWS);
         let mark = self.free(self.marks.get(last).copied().unwrap_or_default());
-        let ring = &top::open(&self.sheet, self.end(), &self.ring);
+        let ring = &top::open(&self.sheet, self.last_row(), &self.ring);
         let (surface, rows, ends) = (self.surface, self.rows, self.ends());
         let (squareness, quick, tail) = (self.options.squareness, self.quick(), self.tail);
         let lag = self.lag;
