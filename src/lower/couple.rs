@@ -18,7 +18,8 @@ pub(super) fn cycle(ring: &[DVec3], places: &[DVec3]) -> Vec<usize> {
         let to = ring[(index + 1) % ring.len()];
         // What is nearest to a point between the two is nearly so to their middle.
         let middle = from.midpoint(to);
-        let least = places.iter().map(|place| place.distance(middle)).fold(f64::INFINITY, f64::min);
+        let least =
+            places.iter().map(|place| place.distance_squared(middle)).fold(f64::INFINITY, f64::min).sqrt();
         let reach = (least + from.distance(to)) * (1.0 + 1e-9);
         close.clear();
         close.extend(

@@ -18,13 +18,15 @@ impl Stack {
         let area = |row: &[DVec3]| -> DVec3 {
             row.iter().zip(row.iter().cycle().skip(1)).map(|(a, b)| (*a - row[0]).cross(*b - row[0])).sum()
         };
-        let axis = -rows.iter().map(|row| area(row)).sum::<DVec3>().normalize_or_zero();
+        let areas: Vec<DVec3> = rows.iter().map(|row| area(row)).collect();
+        let axis = -areas.iter().sum::<DVec3>().normalize_or_zero();
         if axis == DVec3::ZERO {
             return false;
         }
         let center = |row: &[DVec3]| row.iter().sum::<DVec3>() / around as f64;
-        let weight: f64 = rows.iter().map(|row| area(row).length()).sum();
-        let origin = rows.iter().map(|row| center(row) * area(row).length()).sum::<DVec3>() / weight;
+        let weight: f64 = areas.iter().map(|area| area.length()).sum();
+        let centers = rows.iter().zip(&areas).map(|(row, area)| center(row) * area.length());
+        let origin = centers.sum::<DVec3>() / weight;
         let split = |p: DVec3| {
             let arm = p - origin;
             let height = arm.dot(axis);

@@ -1,7 +1,7 @@
 //! The ends of an object: open edges, and the tips of its limbs, found as far points that stand out.
 
 use super::Mesh;
-use super::soup::{NONE, meeting};
+use super::soup::{NONE, meeting, rising};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -242,9 +242,8 @@ impl Mesh {
     /// Far points that stand out: maxima of the distance, each with how far one must come back to get to a higher one.
     fn tips(&self, distance: &[f64], row: f64) -> Vec<(u32, f64)> {
         let count = self.points.len();
-        let key = |v: u32| (distance[v as usize], v);
-        let mut order: Vec<u32> = (0..count as u32).collect();
-        order.sort_unstable_by(|a, b| key(*b).0.total_cmp(&key(*a).0).then(b.cmp(a)));
+        let mut order = rising(distance.iter().copied().zip(0..));
+        order.reverse();
         let share = self.vertex_areas();
         let mut leader = vec![NONE; count];
         let peak: Vec<u32> = (0..count as u32).collect();

@@ -1,7 +1,7 @@
 //! The Cholesky factor of a sparse system, in an order found by nested dissection: made once, it serves many right sides.
 
 use super::solver::Matrix;
-use super::soup::NONE;
+use super::soup::{NONE, rising};
 use glam::DVec3;
 
 /// Sets of at most this many unknowns are not divided.
@@ -171,11 +171,8 @@ fn dissect(matrix: &Matrix, places: &[DVec3], last: &[u32]) -> Vec<u32> {
     }
     // The unknowns by each coordinate; all three lists are divided alike.
     let mut sorted = [0, 1, 2].map(|axis| {
-        let mut list: Vec<u32> = (0..count as u32).filter(|i| side[*i as usize] != NONE).collect();
-        list.sort_unstable_by(|a, b| {
-            places[*a as usize][axis].total_cmp(&places[*b as usize][axis]).then(a.cmp(b))
-        });
-        list
+        let among = (0..count as u32).filter(|i| side[*i as usize] != NONE);
+        rising(among.map(|i| (places[i as usize][axis], i)))
     });
     let mut rank = vec![0_u32; count];
     let mut change: Vec<i32> = Vec::new();

@@ -31,18 +31,20 @@ impl Mesh {
     fn flat_around(&self, ring: &[u32], length: f64) -> bool {
         let diameter = length / std::f64::consts::PI;
         // A small piece may end before the diameter is reached; a few triangles do not tell.
-        let fine = 0.5 * diameter > 2.0 * self.mean_edge();
-        self.flare(ring, length, diameter) > FLAT
-            || (fine && self.flare(ring, length, 0.5 * diameter) > FLAT_NEAR)
+        let edge = self.mean_edge();
+        let fine = 0.5 * diameter > 2.0 * edge;
+        let distance = self.distances(ring, 2.0 * (diameter + edge));
+        let flare = |reach: f64| self.flare(&distance, reach, 2.0 * (reach + edge)) / (length * reach);
+        flare(diameter) > FLAT || (fine && flare(0.5 * diameter) > FLAT_NEAR)
     }
 
-    /// Area within reach of an opening against that of a tube of its width.
-    fn flare(&self, ring: &[u32], length: f64, reach: f64) -> f64 {
-        let distance = self.distances(ring, 2.0 * reach + 2.0 * self.mean_edge());
+    /// Area within reach of an opening, by distances that are known up to a limit.
+    fn flare(&self, distance: &[f64], reach: f64, limit: f64) -> f64 {
         let mut area = 0.0;
         for (face, corners) in self.faces.iter().enumerate() {
             // The share of a face within reach, as if the distance were even over it.
-            let at = corners.map(|v| distance[v as usize]);
+            let at =
+                corners.map(|v| Some(distance[v as usize]).filter(|d| *d <= limit).unwrap_or(f64::INFINITY));
             let (near, far) = (at.into_iter().fold(f64::MAX, f64::min), at.into_iter().fold(0.0, f64::max));
             let share = if far <= reach {
                 1.0
@@ -54,6 +56,6 @@ impl Mesh {
             };
             area += 0.5 * share * self.normal(face as u32).length();
         }
-        area / (length * reach)
+        area
     }
 }

@@ -141,3 +141,15 @@ pub(super) fn meeting(leader: &mut [u32], a: u32, b: u32) -> Option<(u32, u32)> 
     let (a, b) = (find(leader, a), find(leader, b));
     (a != b).then_some((a, b))
 }
+
+/// Numbers in the order of their values, equal ones as they are.
+pub(super) fn rising(values: impl Iterator<Item = (f64, u32)>) -> Vec<u32> {
+    // Whole numbers in the order of `f64::total_cmp`, which are quicker to compare.
+    let key = |value: f64| {
+        let bits = value.to_bits() as i64;
+        bits ^ ((bits >> 63) as u64 >> 1) as i64
+    };
+    let mut keyed: Vec<(i64, u32)> = values.map(|(value, number)| (key(value), number)).collect();
+    keyed.sort_unstable();
+    keyed.into_iter().map(|(_, number)| number).collect()
+}
