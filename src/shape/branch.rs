@@ -5,9 +5,12 @@ use super::stack::Stack;
 use super::{End, Jet, ParametricSurface};
 use crate::math;
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Places around a branch at which its rim is sought.
 const AROUND: usize = 64;
+/// Fewest of them that are worth being handed to another thread.
+const TOGETHER: usize = 8;
 /// Steps along a branch in which its way out of the parent is sought.
 const ALONG: u32 = 48;
 /// How far a branch that begins on the surface of its parent may be continued backward into it, in its own girths.
@@ -165,7 +168,8 @@ impl Branch<Stack> {
         let axis: DVec3 = (0..AROUND).map(|k| clear.jet(0.0, turn(k, AROUND)).du.normalize_or_zero()).sum();
         let axis = axis.normalize_or_zero();
         let back: Vec<f64> = feet
-            .iter_mut()
+            .par_iter_mut()
+            .with_min_len(TOGETHER)
             .enumerate()
             .map(|(k, foot)| way_back(clear.point(0.0, turn(k, AROUND)), axis, foot, parent, reach))
             .collect();
@@ -180,8 +184,8 @@ impl Branch<Stack> {
         // The rows of the branch where they lie, the first one not right beside its begin.
         let (places, least) = (surface.places(), LEAST_STEP * row / surface.length());
         let places = &places[..places.len() - usize::from(closed)];
-        let rest = places.iter().filter(|place| **place > clear.mean + least);
-        rows.extend(rest.map(|place| line((place - clear.mean) / (1.0 - clear.mean))));
+        let rest = &places[places.partition_point(|place| *place <= clear.mean + least)..];
+        rows.par_extend(rest.par_iter().map(|place| line((place - clear.mean) / (1.0 - clear.mean))));
         let pole = closed.then(|| surface.point(1.0, 0.0));
         let stack = Stack::of_rows(rows, [None, pole]).ok_or(Misfit::Inside)?;
         let clear = stack.places().get(1).copied().unwrap_or(0.0);
@@ -224,19 +228,17 @@ fn way_back(point: DVec3, axis: DVec3, foot: &mut Foot, parent: &Solid<'_>, reac
 
 /// Where the lines of a surface lie farther than `reach` from the parent for the first time, and the feet there.
 fn clear_of(surface: &Stack, parent: &Solid<'_>, reach: f64) -> Result<(Vec<f64>, Vec<Foot>), Misfit> {
-    let mut places = Vec::with_capacity(AROUND);
-    let mut feet = Vec::with_capacity(AROUND);
-    let mut lost = 0;
-    let mut first = None;
     let length = super::length_along(surface, 0.0, 0.0..1.0, 8).max(1e-9);
+    let mut feet: Vec<Foot> = Vec::with_capacity(AROUND);
     for k in 0..AROUND {
-        let v = k as f64 / AROUND as f64;
-        let begin = surface.point(0.0, v);
+        let begin = surface.point(0.0, k as f64 / AROUND as f64);
         // Beside the foot of the line before, if it lies there.
-        let beside = first.map(|foot: Foot| parent.refine_to(begin, foot.u, foot.v, NEARLY));
-        let mut foot =
-            beside.filter(|foot| foot.distance.abs() < reach).unwrap_or_else(|| parent.foot(begin));
-        first = Some(foot);
+        let beside = feet.last().map(|foot| parent.refine_to(begin, foot.u, foot.v, NEARLY));
+        feet.push(beside.filter(|foot| foot.distance.abs() < reach).unwrap_or_else(|| parent.foot(begin)));
+    }
+    // Along a line from its begin: the last place within reach, `None` where it goes on to the end, and the foot there.
+    let follow = |(k, mut foot): (usize, Foot)| {
+        let v = k as f64 / AROUND as f64;
         let next_to = |u: f64, foot: &Foot| parent.refine_to(surface.point(u, v), foot.u, foot.v, NEARLY);
         let (mut near, mut far) = (0.0, None);
         while near < 1.0 {
@@ -250,12 +252,7 @@ fn clear_of(surface: &Stack, parent: &Solid<'_>, reach: f64) -> Result<(Vec<f64>
             }
             (near, foot) = (u, next);
         }
-        let Some(mut far) = far else {
-            lost += 1;
-            places.push(f64::NAN);
-            feet.push(foot);
-            continue;
-        };
+        let Some(mut far) = far else { return (None, foot) };
         for _ in 0..BETWEEN {
             // The distance grows nearly evenly.
             let share = (reach - foot.distance) / (far.1 - foot.distance).max(1e-12);
@@ -267,16 +264,17 @@ fn clear_of(surface: &Stack, parent: &Solid<'_>, reach: f64) -> Result<(Vec<f64>
                 (near, foot) = (middle, next);
             }
         }
-        places.push(near);
-        feet.push(foot);
-    }
+        (Some(near), foot)
+    };
+    let followed = feet.into_par_iter().with_min_len(TOGETHER).enumerate().map(follow);
+    let (places, feet): (Vec<Option<f64>>, Vec<Foot>) = followed.unzip();
     // A line that runs along the parent all the way leaves it where the last of the others does.
-    let last = places.iter().copied().filter(|place| !place.is_nan()).fold(0.0, f64::max);
+    let last = places.iter().flatten().copied().fold(0.0, f64::max);
+    let lost = places.iter().filter(|place| place.is_none()).count();
     if lost * 4 > AROUND || last >= 0.9 {
         return Err(Misfit::Inside);
     }
-    places.iter_mut().filter(|place| place.is_nan()).for_each(|place| *place = last);
-    Ok((places, feet))
+    Ok((places.into_iter().map(|place| place.unwrap_or(last)).collect(), feet))
 }
 
 impl<S: ParametricSurface> ParametricSurface for Branch<S> {

@@ -2,12 +2,15 @@
 
 use super::{End, Jet, ParametricSurface};
 use glam::DVec3;
+use rayon::prelude::*;
 use std::fmt;
 
 /// Places around the tube in the table of its points.
 const AROUND: u32 = 32;
 /// Least and greatest number of places along it.
 const ALONG: [u32; 2] = [16, 256];
+/// Fewest of all places that are worth being handed to another thread.
+const TOGETHER: usize = 256;
 /// Steps that refine a foot.
 const STEPS: u32 = 8;
 /// Nearest to an end that derivatives are taken, for a pole has none.
@@ -48,17 +51,17 @@ impl<'s> Solid<'s> {
         let length = super::length_along(surface, 0.0, 0.0..1.0, 8);
         let along =
             (f64::from(AROUND) * length / girth).clamp(f64::from(ALONG[0]), f64::from(ALONG[1])) as u32;
-        let mut grid = Vec::with_capacity((along as usize + 1) * AROUND as usize);
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for i in 0..=along {
-            let u = f64::from(i) / f64::from(along);
-            for k in 0..AROUND {
-                let v = f64::from(k) / f64::from(AROUND);
-                let point = surface.point(u, v);
-                (low, high) = (low.min(point), high.max(point));
-                grid.push((u, v, point));
-            }
-        }
+        let place = |index: u32| {
+            let share = |k: u32, of: u32| f64::from(k) / f64::from(of);
+            let (u, v) = (share(index / AROUND, along), share(index % AROUND, AROUND));
+            (u, v, surface.point(u, v))
+        };
+        let all = (0..(along + 1) * AROUND).into_par_iter().with_min_len(TOGETHER);
+        let grid: Vec<(f64, f64, DVec3)> = all.map(place).collect();
+        let (low, high) =
+            grid.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (_, _, point)| {
+                (low.min(*point), high.max(*point))
+            });
         // The table cuts corners of the body; its box gets a little room for them.
         let room = DVec3::splat(0.05 * (high - low).max_element().max(1e-6));
         Self { surface, ends, grid, low: low - room, high: high + room }
