@@ -25,14 +25,23 @@ pub fn length_along<S: ParametricSurface + ?Sized>(
 
 /// Area over u in [0, 1], in mm^2, by 5-point quadrature on `steps` parts of u and `samples` of v.
 pub fn area<S: ParametricSurface + ?Sized>(surface: &S, steps: u32, samples: u32) -> f64 {
-    let steps = steps.max(1);
+    (0..steps.max(1)).map(|k| area_of(surface, k, steps, samples)).sum()
+}
+
+/// The same of one of the parts of u.
+pub(super) fn area_of<S: ParametricSurface + ?Sized>(
+    surface: &S,
+    part: u32,
+    steps: u32,
+    samples: u32,
+) -> f64 {
     let mut jets = vec![Jet::default(); samples.max(1) as usize];
     let mut ring = |u: f64| {
         surface.ring(u, 0.0, &mut jets);
         jets.iter().map(|jet| jet.du.cross(jet.dv).length()).sum::<f64>() / jets.len() as f64
     };
-    let at = |k: u32| f64::from(k) / f64::from(steps);
-    (0..steps).map(|k| integrate(at(k), at(k + 1), &mut ring)).sum()
+    let at = |k: u32| f64::from(k) / f64::from(steps.max(1));
+    integrate(at(part), at(part + 1), &mut ring)
 }
 
 /// Whether the surface looks the same all around: the metric does not depend on v (to 1e-7 of itself, at 16 x 16

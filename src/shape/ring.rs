@@ -127,6 +127,11 @@ impl Ring {
 
     /// Even samples turned least against those of the ring before: the phase minimizes the sum of squared distances.
     pub fn beside(&self, before: &[DVec3]) -> Vec<DVec3> {
+        self.turned(before).1
+    }
+
+    /// The same with the phase.
+    pub(crate) fn turned(&self, before: &[DVec3]) -> (f64, Vec<DVec3>) {
         let count = before.len();
         // A few samples tell the phase.
         let stride = if count.is_multiple_of(FEW) { count / FEW } else { 1 };
@@ -186,7 +191,8 @@ impl Ring {
             }
             samples = self.samples(few, phase);
         }
-        if moved || few != count { self.samples(count, phase) } else { samples }
+        let same = !moved && few == count;
+        (phase, if same { samples } else { self.samples(count, phase) })
     }
 }
 

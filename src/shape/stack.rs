@@ -63,6 +63,13 @@ impl Stack {
         Self::of_rows(rows, poles)
     }
 
+    /// The same through lines whose phases are known: where [`Ring::turned`] puts each of them against the one before.
+    pub(crate) fn turned(loops: &[(Ring, f64)], poles: [Option<DVec3>; 2], around: usize) -> Option<Self> {
+        let around = around.clamp(8, MOST_AROUND);
+        let loops = loops.iter().take(MOST_LOOPS);
+        Self::of_rows(loops.map(|(ring, phase)| ring.samples(around, *phase)).collect(), poles)
+    }
+
     /// A tube through rows of samples that lie beside each other already.
     pub(crate) fn of_rows(mut rows: Vec<Vec<DVec3>>, poles: [Option<DVec3>; 2]) -> Option<Self> {
         let around = rows.first()?.len();

@@ -10,12 +10,13 @@ use super::way::Way;
 use super::{Fault, Field, Mesh};
 use crate::ir::Gauge;
 use crate::shape::branch::Branch;
-use crate::shape::measure::area;
+use crate::shape::measure::area_of;
 use crate::shape::ring::Ring;
 use crate::shape::solid::Solid;
 use crate::shape::stack::Stack;
 use crate::shape::{Attachment, End, Joint, ParametricSurface};
 use glam::DVec3;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Shortest limb, in rows.
@@ -108,7 +109,18 @@ type Waiting = (usize, Option<(usize, Ring)>, String);
 impl Mesh {
     /// Cuts the mesh into tubes. `progress` hears of steps done and of all there are, as far as they are known.
     pub fn cut(&self, plan: &Plan, mut progress: impl FnMut(u64, u64)) -> Result<Cut, Fault> {
-        self.holes(plan)?;
+        // Most often there is no fault, so the rest does not wait for the search.
+        let mut holes = Ok(());
+        let cut = rayon::in_place_scope(|scope| {
+            scope.spawn(|_| holes = self.holes(plan));
+            self.cut_coarse(plan, &mut progress)
+        });
+        holes?;
+        cut
+    }
+
+    /// Cuts the mesh, or a coarser one where it is finer than its stitches need.
+    fn cut_coarse(&self, plan: &Plan, progress: &mut impl FnMut(u64, u64)) -> Result<Cut, Fault> {
         let length = COARSE * plan.gauge.height.min(plan.gauge.width);
         if self.faces.len() > MANY && self.mean_edge() < 0.7 * length {
             // The first half is the way to fewer triangles.
@@ -122,10 +134,14 @@ impl Mesh {
     fn cut_whole(&self, plan: &Plan, mut progress: impl FnMut(u64, u64)) -> Result<Cut, Fault> {
         // The true field lies best; on bad triangles it has eddies in which limbs are lost.
         let sound = |cut: &Cut| {
-            let area = |piece: &Piece| area(&*piece.surface, SAMPLES[0], SAMPLES[1]);
+            let [steps, samples] = SAMPLES;
+            let parts = cut.pieces.par_iter().flat_map(|piece| {
+                (0..steps).into_par_iter().map(|part| area_of(&*piece.surface, part, steps, samples))
+            });
             // Where only one tube can be laid, a leap in it is better than none.
             let even = cut.pieces.len() == 1 || cut.pieces.iter().all(|piece| piece.even);
-            even && cut.pieces.iter().map(area).sum::<f64>() < MOST_AREA * self.area()
+            // Summed in order: for any number of threads the same.
+            even && parts.collect::<Vec<f64>>().iter().sum::<f64>() < MOST_AREA * self.area()
         };
         let fault = match self.cut_along(plan, false, &mut progress) {
             Ok(cut) if sound(&cut) && cut.pieces.iter().all(|piece| piece.even) => return Ok(cut),
@@ -142,10 +158,12 @@ impl Mesh {
         progress: &mut impl FnMut(u64, u64),
     ) -> Result<Cut, Fault> {
         let row = plan.gauge.height;
-        let find = || Ends::find(self, row, plan.start, &plan.poles);
-        let (mut ends, flows) = rayon::join(find, || Flows::new(self, strict));
+        let mut flows = None;
+        let mut ends = rayon::in_place_scope(|scope| {
+            scope.spawn(|_| flows = Some(Flows::new(self, strict)));
+            Ends::find(self, row, plan.start, &plan.poles)
+        });
         ends.strict = strict;
-        let mut flows = Some(flows);
         if ends.others.is_empty() {
             return Err(Fault::NoEnds { at: self.middle(&ends.start) });
         }
@@ -180,7 +198,8 @@ impl Mesh {
             let (smaller, fewer) = mesh.without(ends, off, plan, &mut limbs)?;
             (rest, ends) = (Some(smaller), fewer);
         };
-        let pieces = grow(pieces, limbs, plan)?;
+        // What is made side by side there is handed over more quickly from within.
+        let pieces = rayon::scope(|_| grow(pieces, limbs, plan))?;
         Ok(Cut { pieces, ends: all, dropped })
     }
 
@@ -328,14 +347,18 @@ impl Mesh {
                 poles[1] = Some(self.middle(tip));
                 high = ways[limb.leaf].level(&field_at, FIRST_RING * row, true);
             }
-            let mut rings =
-                levels.stack([low, high], &ways[limb.leaf].vertices, spacing, first, last.as_ref());
-            if let (None, Some(seam), Some(ring)) = (&parent, plan.seam, rings.first_mut()) {
-                *ring = ring.begun_near(seam);
-            }
-            let most = rings.iter().map(Ring::length).fold(0.0, f64::max);
-            let around = (SAMPLES_A_STITCH * most / plan.gauge.width).clamp(48.0, 256.0) as usize;
-            let stack = Stack::new(&rings, poles, around.next_multiple_of(32));
+            let rings = levels.stack([low, high], &ways[limb.leaf].vertices, spacing, first, last.as_ref());
+            let around = samples_around(&rings, plan);
+            let stack = match (&parent, plan.seam) {
+                (None, Some(seam)) => {
+                    let mut rings: Vec<Ring> = rings.into_iter().map(|(ring, _)| ring).collect();
+                    if let Some(ring) = rings.first_mut() {
+                        *ring = ring.begun_near(seam);
+                    }
+                    Stack::new(&rings, poles, around)
+                }
+                _ => Stack::turned(&rings, poles, around),
+            };
             let Some(mut stack) = stack else {
                 return Err(Fault::NoRows { at: self.middle(tip) });
             };
@@ -412,16 +435,20 @@ fn far_apart(limbs: &[(DVec3, f64)]) -> bool {
     })
 }
 
+/// Samples around a tube through these lines.
+pub(super) fn samples_around(rings: &[(Ring, f64)], plan: &Plan) -> usize {
+    let most = rings.iter().map(|(ring, _)| ring.length()).fold(0.0, f64::max);
+    let around = (SAMPLES_A_STITCH * most / plan.gauge.width).clamp(48.0, 256.0) as usize;
+    around.next_multiple_of(32)
+}
+
 /// Lets the limbs that were cut off grow from the pieces again, the last one first.
 fn grow(mut pieces: Vec<Piece>, limbs: Vec<limb::Limb>, plan: &Plan) -> Result<Vec<Piece>, Fault> {
     let used = pieces.len() - 1;
     let mut letters = ('A'..='Z').chain('a'..='z').skip(used);
     for (number, limb) in limbs.into_iter().rev().enumerate() {
-        let at = limb.pole.or_else(|| limb.rings.last().map(Ring::center)).unwrap_or_default();
-        let most = limb.rings.iter().map(Ring::length).fold(0.0, f64::max);
-        let around = (SAMPLES_A_STITCH * most / plan.gauge.width).clamp(48.0, 256.0) as usize;
-        let stack = Stack::new(&limb.rings, [None, limb.pole], around.next_multiple_of(32));
-        let stack = stack.ok_or(Fault::NoRows { at })?;
+        let at = limb.end;
+        let stack = limb.stack.ok_or(Fault::NoRows { at })?;
         let base: Vec<DVec3> = (0..16).map(|k| stack.point(0.0, f64::from(k) / 16.0)).collect();
         let ends = stack.ends();
         let solids = pieces.iter().map(|piece| Solid::new(&*piece.surface, piece.ends));

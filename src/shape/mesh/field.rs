@@ -83,6 +83,13 @@ impl System {
     }
 }
 
+/// The field of a flow to one limb.
+pub(super) struct Lone {
+    pub(super) field: Vec<f64>,
+    /// The vertices at which it is about 0.
+    pub(super) ground: Vec<u32>,
+}
+
 /// An end as the source of a unit flow.
 struct Source {
     /// Where the flow enters, and its share there.
@@ -150,9 +157,8 @@ impl<'m> Flows<'m> {
     }
 
     /// The field of a flow that leaves at one end and enters at all others alike: around the limb that goes to that end the
-    /// level lines are rings, and where it leaves the object they spread out evenly. Also the vertices at which it is
-    /// about 0.
-    pub(super) fn lone(&mut self, ends: &Ends, which: usize) -> (Vec<f64>, Vec<u32>) {
+    /// level lines are rings, and where it leaves the object they spread out evenly.
+    pub(super) fn lone(&mut self, ends: &Ends, which: usize) -> Lone {
         let field = self.mended(ends, |flows| flows.alike(ends, which));
         let rest: Vec<&Tip> = ends.beside(which).collect();
         let level: f64 =
@@ -165,7 +171,7 @@ impl<'m> Flows<'m> {
         ground.extend(rest.iter().flat_map(|tip| &tip.ring));
         ground.sort_unstable();
         ground.dedup();
-        (field.into_iter().map(|value| value - level).collect(), ground)
+        Lone { field: field.into_iter().map(|value| value - level).collect(), ground }
     }
 
     /// How much flows through each end when it leaves at one and all others have the same potential.

@@ -65,7 +65,8 @@ impl Levels<'_> {
         }
     }
 
-    /// Lines from `low` to `high` along a way, about `spacing` apart; those of the ends are `first` and `last` where given.
+    /// Lines from `low` to `high` along a way, about `spacing` apart, with the phase (in turns) of each beside the one before;
+    /// those of the ends are `first` and `last` where given.
     pub(super) fn stack(
         &self,
         [low, high]: [f64; 2],
@@ -73,16 +74,16 @@ impl Levels<'_> {
         spacing: f64,
         first: Option<Ring>,
         last: Option<&Ring>,
-    ) -> Vec<Ring> {
+    ) -> Vec<(Ring, f64)> {
         let range = high - low;
         let least = 1e-4 * range;
-        let mut rings: Vec<Ring> = Vec::new();
+        let mut rings: Vec<(Ring, f64)> = Vec::new();
         let mut at = low;
         let mut step = spacing.min(range);
         let mut samples: Option<Vec<DVec3>> = None;
         if let Some(ring) = first.or_else(|| self.line(low, way)) {
             samples = Some(ring.samples(SAMPLES, 0.0));
-            rings.push(ring);
+            rings.push((ring, 0.0));
         }
         let mut missed = 0;
         while at < high && rings.len() < MOST_LEVELS && missed < MOST_MISSED {
@@ -100,8 +101,9 @@ impl Levels<'_> {
                 missed += 1;
                 continue;
             };
-            let placed =
-                samples.as_ref().map_or_else(|| ring.samples(SAMPLES, 0.0), |before| ring.beside(before));
+            let (phase, placed) = samples
+                .as_ref()
+                .map_or_else(|| (0.0, ring.samples(SAMPLES, 0.0)), |before| ring.turned(before));
             let (mean, most) = samples.as_ref().map_or((spacing, spacing), |before| gap(before, &placed));
             let far = (mean / spacing).max(most / (2.5 * spacing));
             // The last step may be 1.4 of the least, for a shorter one would leave too little behind it.
@@ -111,7 +113,7 @@ impl Levels<'_> {
             }
             step = ((next - at) * (1.0 / far.max(0.3)).clamp(0.5, 2.0)).max(least);
             at = next;
-            rings.push(ring);
+            rings.push((ring, phase));
             samples = Some(placed);
         }
         rings

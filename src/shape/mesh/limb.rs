@@ -1,16 +1,18 @@
 //! Cutting a limb off: where it leaves the object, its level lines, and the object with the place closed smoothly.
 
-use super::cut::Plan;
+use super::cut::{Plan, samples_around};
 use super::ends::{Ends, Tip};
-use super::field::Flows;
+use super::field::{Flows, Lone};
 use super::levels::Levels;
 use super::patch::Patch;
-use super::soup::{NONE, Soup, meeting};
+use super::soup::{NONE, Soup, meeting, rising};
 use super::way::Way;
 use super::{Fault, Field, Mesh};
 use crate::math::atan2;
 use crate::shape::ring::Ring;
+use crate::shape::stack::Stack;
 use glam::DVec3;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Level lines that are measured to find where a limb begins.
@@ -25,6 +27,8 @@ const WIDER: f64 = 1.65;
 const MARGIN: f64 = 0.15;
 /// Tries at a narrower cut.
 const TRIES: u32 = 4;
+/// Fewest points of a patch that are worth being handed to another thread.
+const TOGETHER: usize = 32;
 /// Rings of triangles that a patch has unless its edges are shortest, and most of all; shortest and longest edges in stitches.
 const LEAST_RINGS: f64 = 7.0;
 const MOST_RINGS: usize = 48;
@@ -33,10 +37,10 @@ const EDGES: [f64; 2] = [0.5, 1.6];
 /// A limb that was cut off.
 #[derive(Clone, Debug)]
 pub(super) struct Limb {
-    /// Its level lines, from the object that it was cut off to its end.
-    pub(super) rings: Vec<Ring>,
-    /// Its tip, when it is closed.
-    pub(super) pole: Option<DVec3>,
+    /// Its level lines as a tube, from the object that it was cut off to its end; `None` where they make none.
+    pub(super) stack: Option<Stack>,
+    /// Where its end is.
+    pub(super) end: DVec3,
 }
 
 /// Where a limb begins, and the field that tells.
@@ -73,9 +77,12 @@ impl Mesh {
         leaves: &[usize],
         (before, row): (DVec3, f64),
     ) -> Result<Vec<(usize, Root)>, Fault> {
+        let lone: Vec<Lone> = leaves.iter().map(|leaf| flows.lone(ends, *leaf)).collect();
+        let found = leaves.par_iter().zip(lone).map(|(leaf, lone)| self.root(lone, ends, *leaf, row));
+        let found: Vec<Result<Root, Fault>> = found.collect();
         let mut roots = Vec::with_capacity(leaves.len());
-        for &leaf in leaves {
-            let root = self.root(flows, ends, leaf, row)?;
+        for (&leaf, root) in leaves.iter().zip(found) {
+            let root = root?;
             let turn = atan2(before.cross(root.direction).length(), before.dot(root.direction));
             // A body goes on to its own end, if it has one.
             let turn = if ends.others[leaf].between { -1.0 } else { turn };
@@ -87,9 +94,8 @@ impl Mesh {
 
     /// Finds where the limb begins that goes to one of the ends: downward from its tip its level lines keep their length,
     /// and then they spread out over what it grows from.
-    fn root(&self, flows: &mut Flows<'_>, ends: &Ends, which: usize, row: f64) -> Result<Root, Fault> {
+    fn root(&self, Lone { field, ground }: Lone, ends: &Ends, which: usize, row: f64) -> Result<Root, Fault> {
         let tip = &ends.others[which];
-        let (field, ground) = flows.lone(ends, which);
         let way = self.way(tip, &ground, &field);
         let saddle = self.saddle(&field, ends, which);
         let lines = Levels { mesh: self, field: &field };
@@ -161,8 +167,8 @@ impl Mesh {
                         mesh.sever(&ends, which, &still, (self, &tip, &root), plan)?
                     } else {
                         // It bore other limbs, or one has been too near.
-                        let root =
-                            mesh.root(&mut Flows::new(mesh, ends.strict), &ends, which, plan.gauge.height)?;
+                        let lone = Flows::new(mesh, ends.strict).lone(&ends, which);
+                        let root = mesh.root(lone, &ends, which, plan.gauge.height)?;
                         let tip = ends.others[which].clone();
                         mesh.sever(&ends, which, &root, (mesh, &tip, &root), plan)?
                     }
@@ -184,14 +190,15 @@ impl Mesh {
         Ok((mesh, ends))
     }
 
-    /// The level lines of a limb above the level along which it is cut off.
+    /// The tube of a limb above the level along which it is cut off.
     fn limb(&self, tip: &Tip, root: &Root, level: f64, plan: &Plan) -> Limb {
         let levels = Levels { mesh: self, field: &root.field };
         let spacing = plan.gauge.height.max(0.4 * self.mean_edge());
         let (last, pole) =
             if tip.open { (self.opening(&tip.ring, true), None) } else { (None, Some(self.middle(tip))) };
         let rings = levels.stack([level, root.high], &root.way.vertices, spacing, None, last.as_ref());
-        Limb { rings, pole }
+        let end = pole.or_else(|| rings.last().map(|(ring, _)| ring.center())).unwrap_or_default();
+        Limb { stack: Stack::turned(&rings, [None, pole], samples_around(&rings, plan)), end }
     }
 
     /// Cuts off the limb that goes to one of the ends; its level lines are those of a mesh on which it is whole.
@@ -253,8 +260,7 @@ impl Mesh {
     /// object falls apart.
     fn saddle(&self, field: &[f64], ends: &Ends, which: usize) -> f64 {
         let count = self.points.len();
-        let mut order: Vec<u32> = (0..count as u32).collect();
-        order.sort_unstable_by(|a, b| field[*a as usize].total_cmp(&field[*b as usize]).then(a.cmp(b)));
+        let order = rising(field.iter().copied().zip(0..));
         let mut leader = vec![NONE; count];
         let mut end = vec![NONE; count];
         for (i, tip) in (0..).zip(ends.beside(which)) {
@@ -409,20 +415,23 @@ impl Mesh {
         let around = length / (length / edge.len() as f64).clamp(finest, coarsest);
         let rings = ((around / std::f64::consts::TAU) as usize).clamp(3, MOST_RINGS);
         let mut before: Vec<u32> = edge.iter().map(|v| place[*v as usize]).collect();
+        let mut flat = Vec::new();
+        let base = soup.points.len();
         for ring in 1..=rings {
             let share = ring as f64 / rings as f64;
             // As wide apart around as from ring to ring.
             let count = if ring == rings { 1 } else { ((around * (1.0 - share)) as usize).max(5) };
-            let first = soup.points.len() as u32;
-            soup.points.extend((0..count).map(|k| {
+            let first = (base + flat.len()) as u32;
+            flat.extend((0..count).map(|k| {
                 let at = k as f64 / count as f64 * edge.len() as f64;
                 let [a, b] = [at as usize, at as usize + 1].map(|k| self.point(edge[k % edge.len()]));
-                onto(a.lerp(b, at.fract()).lerp(apex, share))
+                a.lerp(b, at.fract()).lerp(apex, share)
             }));
             let here: Vec<u32> = (first..first + count as u32).collect();
             zip(&before, &here, &mut soup.faces);
             before = here;
         }
+        soup.points.par_extend(flat.into_par_iter().with_min_len(TOGETHER).map(onto));
         let mut mesh = Self::link(soup);
         mesh.find_boundaries();
         (mesh, place)
