@@ -230,6 +230,14 @@ mod tests {
     }
 
     #[test]
+    fn a_phase_serves_any_number_of_samples() {
+        let before = circle(0.0, 256).samples(32, 0.0);
+        let (phase, few) = circle(0.3, 200).turned(&before);
+        let many = circle(0.3, 200).samples(96, phase);
+        assert!(few.iter().zip(many.iter().step_by(3)).all(|(a, b)| a.distance(*b) < 1e-12));
+    }
+
+    #[test]
     fn reversing_keeps_the_line() {
         let ring =
             Ring::new([[0., 0.], [4., 0.], [4., 1.], [0., 2.]].map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec())

@@ -153,3 +153,16 @@ pub(super) fn rising(values: impl Iterator<Item = (f64, u32)>) -> Vec<u32> {
     keyed.sort_unstable();
     keyed.into_iter().map(|(_, number)| number).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_rise_as_floats_do() {
+        let values = [0.5, -1.0, f64::INFINITY, -0.0, 0.0, -2.5, 0.5, f64::MIN];
+        let mut order: Vec<u32> = (0..values.len() as u32).collect();
+        order.sort_by(|a, b| values[*a as usize].total_cmp(&values[*b as usize]));
+        assert_eq!(rising(values.into_iter().zip(0..)), order);
+    }
+}
