@@ -27,8 +27,8 @@ const SHARES: u8 = 2;
 const LAST_TURN: f64 = 0.999;
 /// The same where the pull is firm: with those that will be the last when a sliver of a round has been taken off.
 const LAST_TURNS: f64 = LAST_TURN + super::top::SLIVER;
-/// Derivatives of the surface and the matrices are taken anew every so many sweeps; between them points move to first
-/// order.
+/// Derivatives of the surface and the matrices are taken anew after so many sweeps, and then after twice as many each time;
+/// between them points move to first order.
 const REFRESH: u32 = 7;
 /// Largest momentum.
 const MOMENTUM: f32 = 0.85;
@@ -241,9 +241,11 @@ impl Relaxer {
         self.nodes.clear();
         self.nodes.resize(span.count.div_ceil(4), Nodes::default());
         self.take(sheet, &span);
+        let mut refresh = REFRESH;
         for sweep in 0..effort.sweeps {
-            if sweep.is_multiple_of(REFRESH) {
+            if sweep == 0 || sweep == refresh {
                 if sweep > 0 {
+                    refresh *= 2;
                     self.commit(sheet, &span, ends.range);
                     for i in first..end {
                         look(surface, sheet, i);
