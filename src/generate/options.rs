@@ -5,11 +5,16 @@ use crate::ir::{Hand, Maker};
 use crate::shape::Wishes;
 use serde::Deserialize;
 
-/// Parts of more nodes than this get more sweeps; so many later it is so many times more; from so many on it is none.
-const SMALL: usize = 1_050;
-const RISE: f64 = 400.0;
+/// From the first to the second of these numbers of nodes parts get more and more sweeps, up to so many times more; from the third
+/// to the fourth less and less of them.
+const SMALL: [usize; 2] = [1_050, 1_450];
+const LARGE: [usize; 2] = [5_500, 8_500];
 const LONGER: f64 = 1.5;
-const VERY_LARGE: usize = 50_000;
+
+/// How far a number has come from the first to the second of two, as a share.
+fn past(number: usize, [from, to]: [usize; 2]) -> f64 {
+    (number.saturating_sub(from) as f64 / (to - from) as f64).min(1.0)
+}
 
 /// A set of options under one name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -43,7 +48,7 @@ pub struct Options {
     pub window: u32,
     /// Sweeps over the window after each row.
     pub window_sweeps: u32,
-    /// Sweeps over the whole part at the end; parts from some 1,000 to 50,000 stitches get up to two and a half times as many.
+    /// Sweeps over the whole part at the end; parts from some 1,000 to 8,000 stitches get up to two and a half times as many.
     pub sweeps: u32,
     /// Weight of a square tile against exact lengths in the final sweeps: higher trades length error for skew.
     pub squareness: f64,
@@ -143,11 +148,8 @@ impl Options {
     /// Sweeps over a part of so many nodes: what is off at one end of a larger part takes longer to spread over it, and very
     /// large ones have no time for more. None of it in a hurry.
     pub(super) fn sweeps_over(&self, nodes: usize) -> u32 {
-        let more = match nodes {
-            _ if self.preset == Preset::Fast => 0.0,
-            ..VERY_LARGE => (nodes.saturating_sub(SMALL) as f64 / RISE).min(1.0),
-            _ => 0.0,
-        };
+        let (rise, fall) = (past(nodes, SMALL), past(nodes, LARGE));
+        let more = if self.preset == Preset::Fast { 0.0 } else { rise - fall };
         self.sweeps + (f64::from(self.sweeps) * LONGER * more) as u32
     }
 

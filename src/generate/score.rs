@@ -67,15 +67,32 @@ impl Score {
 
     /// The same without what only a maker sees.
     pub(super) fn of_fit(sheet: &Sheet) -> Self {
-        let (mut length, mut sum, mut square) = (0.0, 0.0, 0.0);
-        for edge in &sheet.edges {
+        Fit::of(sheet, &sheet.edges, &sheet.quads).score()
+    }
+}
+
+/// Sums over some edges and tiles; those of the parts of a sheet add up.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Fit {
+    edges: usize,
+    length: f64,
+    sum: f64,
+    square: f64,
+    quads: usize,
+    skew: f64,
+    inverted: usize,
+}
+
+impl Fit {
+    pub(super) fn of(sheet: &Sheet, edges: &[Edge], quads: &[Quad]) -> Self {
+        let mut fit = Self { edges: edges.len(), quads: quads.len(), ..Self::default() };
+        for edge in edges {
             let error = length_error(sheet, edge);
-            length += error.abs();
-            sum += error;
-            square += error * error;
+            fit.length += error.abs();
+            fit.sum += error;
+            fit.square += error * error;
         }
-        let (mut skew, mut inverted) = (0.0, 0);
-        for quad in &sheet.quads {
+        for quad in quads {
             let [b0, b1, t0, t1] = quad.corners.map(|id| sheet.point[id as usize]);
             let across = (b1 - b0) + (t1 - t0);
             let up = match quad.kind {
@@ -84,19 +101,35 @@ impl Score {
                 TileKind::TurnRight => t1 - b1,
             };
             let size = (across.length_squared() * up.length_squared()).sqrt();
-            skew += if size > 0.0 { (across.dot(up) / size).abs() } else { 0.0 };
-            inverted += usize::from(is_inverted(sheet, quad));
+            fit.skew += if size > 0.0 { (across.dot(up) / size).abs() } else { 0.0 };
+            fit.inverted += usize::from(is_inverted(sheet, quad));
         }
+        fit
+    }
+
+    pub(super) fn and(self, other: Self) -> Self {
+        Self {
+            edges: self.edges + other.edges,
+            length: self.length + other.length,
+            sum: self.sum + other.sum,
+            square: self.square + other.square,
+            quads: self.quads + other.quads,
+            skew: self.skew + other.skew,
+            inverted: self.inverted + other.inverted,
+        }
+    }
+
+    pub(super) fn score(self) -> Score {
+        let Self { edges, quads, inverted, .. } = self;
         let share = |sum: f64, count: usize| sum / count.max(1) as f64;
-        let edges = sheet.edges.len();
-        let (length, skew) = (share(length, edges), share(skew, sheet.quads.len()));
-        let lengths = 0.5 * (length / USUAL_LENGTH + share(square, edges).sqrt() / USUAL_SPREAD);
-        let bias = BIAS * (share(sum, edges).abs() - BIAS_FREE).max(0.0);
+        let (length, skew) = (share(self.length, edges), share(self.skew, quads));
+        let lengths = 0.5 * (length / USUAL_LENGTH + share(self.square, edges).sqrt() / USUAL_SPREAD);
+        let bias = BIAS * (share(self.sum, edges).abs() - BIAS_FREE).max(0.0);
         let mut total = lengths + skew / USUAL_SKEW + bias;
         if inverted > 0 {
-            total += ANY_INVERTED + INVERTED * share(inverted as f64, sheet.quads.len());
+            total += ANY_INVERTED + INVERTED * share(inverted as f64, quads);
         }
-        Self { total, inverted, length, skew, stacked: 0.0 }
+        Score { total, inverted, length, skew, stacked: 0.0 }
     }
 }
 

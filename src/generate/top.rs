@@ -5,7 +5,7 @@
 
 use super::relax::{Brink, Effort, Ends, Firm, Mark, Relaxer, Stretch};
 use super::rows::Rows;
-use super::score::Score;
+use super::score::Fit;
 use super::sheet::{Sheet, Work};
 use crate::ir::NodeId;
 use crate::shape::ParametricSurface;
@@ -56,20 +56,28 @@ impl Top<'_> {
             false => RAGGED,
         };
         let rows = Stretch::since(self.mark, sheet);
+        // What lies below does not move.
+        let mut below = None;
         for _ in 0..TIMES {
             let off = spread(sheet, self.rows, self.ring);
             if off <= ragged {
                 return;
             }
             let before = Places::of(sheet, self.mark.nodes);
-            let fit = Score::of_fit(sheet);
+            let Mark { edges, quads, .. } = self.mark;
+            let below =
+                *below.get_or_insert_with(|| Fit::of(sheet, &sheet.edges[..edges], &sheet.quads[..quads]));
+            let score = |sheet: &Sheet| {
+                below.and(Fit::of(sheet, &sheet.edges[edges..], &sheet.quads[quads..])).score()
+            };
+            let fit = score(sheet);
             relaxer.relax(self.surface, sheet, rows, 0, effort, ends);
-            let mut after = Score::of_fit(sheet);
+            let mut after = score(sheet);
             if after.inverted > fit.inverted {
                 // Softly, what was pressed flat opens again.
                 let soft = Ends { level: Some(Brink { firm: Firm::No, ..brink }), ..ends };
                 relaxer.relax(self.surface, sheet, rows, 0, effort, soft);
-                after = Score::of_fit(sheet);
+                after = score(sheet);
             }
             let worse = spread(sheet, self.rows, self.ring) > off;
             if worse || after.inverted > fit.inverted || after.total > fit.total + PRICE {
