@@ -52,6 +52,8 @@ impl Mesh {
         }
         let faces = work.faces.into_iter().filter(|face| face[0] != NONE).collect();
         let mut mesh = Self::link(Soup { points: work.points, faces, ..Soup::default() });
+        let normals = self.vertex_normals();
+        mesh.normals = mesh.vertices.iter().map(|vertex| normals[*vertex as usize - 1]).collect();
         for vertex in &mut mesh.vertices {
             *vertex = self.number(*vertex - 1);
         }

@@ -51,7 +51,7 @@ impl Levels<'_> {
             let (low, high) = (mesh.from(h), mesh.to(h));
             let (a, b) = (value(low), value(high));
             let t = if b > a { ((level - a) / (b - a)).clamp(0.0, 1.0) } else { 0.5 };
-            points.push(mesh.point(low).lerp(mesh.point(high), t));
+            points.push(mesh.above(low, high, t));
             let (next, last) = (Mesh::after(h), Mesh::before(h));
             // Of the other two edges one falls through the level.
             let out = if value(mesh.to(next)) < level { next } else { last };

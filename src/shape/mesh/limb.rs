@@ -380,12 +380,14 @@ impl Mesh {
     ) -> (Self, Vec<u32>) {
         let mut place = vec![NONE; self.points.len()];
         let mut soup = Soup::default();
+        let mut known = Vec::new();
         for face in self.faces.iter().zip(kept).filter(|(_, kept)| **kept).map(|(face, _)| face) {
             let corners = face.map(|v| {
                 let slot = &mut place[v as usize];
                 if *slot == NONE {
                     *slot = soup.points.len() as u32;
                     soup.points.push(self.point(v));
+                    known.extend(self.normals.get(v as usize));
                 }
                 *slot
             });
@@ -434,6 +436,10 @@ impl Mesh {
         soup.points.par_extend(flat.into_par_iter().with_min_len(TOGETHER).map(onto));
         let mut mesh = Self::link(soup);
         mesh.find_boundaries();
+        if !known.is_empty() {
+            known.resize(mesh.points.len(), DVec3::ZERO);
+            mesh.normals = known;
+        }
         (mesh, place)
     }
 }

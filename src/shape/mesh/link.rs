@@ -31,6 +31,7 @@ impl Mesh {
             starts: Vec::new(),
             leaving: Vec::new(),
             boundaries: Vec::new(),
+            normals: Vec::new(),
         };
         mesh.connect();
         mesh
@@ -113,6 +114,24 @@ impl Mesh {
 
     pub(super) fn point(&self, vertex: u32) -> DVec3 {
         self.points[vertex as usize]
+    }
+
+    /// A point of the surface above an edge: on the edge itself, or on the cubic that leaves both of its ends at right angles
+    /// to the normals there (Vlachos et al. 2001).
+    pub(super) fn above(&self, low: u32, high: u32, t: f64) -> DVec3 {
+        let (a, b) = (self.point(low), self.point(high));
+        let flat = a.lerp(b, t);
+        let (Some(m), Some(n)) = (self.normals.get(low as usize), self.normals.get(high as usize)) else {
+            return flat;
+        };
+        let edge = b - a;
+        flat + (*n * (t * edge.dot(*n)) - *m * ((1.0 - t) * edge.dot(*m))) * (t * (1.0 - t))
+    }
+
+    /// Normals of the vertices, of length 1.
+    pub(super) fn vertex_normals(&self) -> Vec<DVec3> {
+        let around = |v: u32| self.corners(v).iter().map(|h| self.normal(h / 3)).sum::<DVec3>();
+        (0..self.points.len() as u32).map(|v| around(v).normalize_or_zero()).collect()
     }
 
     /// Walks along every open edge.

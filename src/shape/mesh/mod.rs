@@ -58,4 +58,7 @@ pub struct Mesh {
     starts: Vec<u32>,
     leaving: Vec<u32>,
     boundaries: Vec<Vec<u32>>,
+    /// Where the mesh was made coarser: the normals that its vertices had before, for edges cut the surface short. Zero where
+    /// they are not known; empty where none is.
+    normals: Vec<DVec3>,
 }
