@@ -46,6 +46,9 @@ const LEAVES: f64 = 1.0;
 /// How far (stitches) the first row of a limb may lie off the rim in which it meets its parent.
 const GIVE: f64 = 1.0;
 
+/// How often flows are poured again at most.
+const POURS: u32 = 2;
+
 /// Meshes of more triangles than this are made coarser where their edges are shorter than this share of a stitch.
 const MANY: usize = 20_000;
 const COARSE: f64 = 0.8;
@@ -93,10 +96,8 @@ pub struct Cut {
 
 /// What is to be done with a mesh.
 enum Next {
-    /// It begins elsewhere.
-    Start,
-    /// It has one more end.
-    End,
+    /// It begins elsewhere, or has one more end.
+    Ends,
     /// The limbs at these ends are cut off, in this order; and the end to which the surface goes on.
     Limbs(Vec<(usize, Root)>, Option<usize>),
     /// It falls into these pieces; none where limbs are to be cut off before.
@@ -180,8 +181,7 @@ impl Mesh {
                 let done = (limbs.len() + off.len()) as u64;
                 progress(done, done + ends.others.len() as u64);
                 match mesh.next(plan, &mut flows, &mut ends, &mut dropped)? {
-                    Next::Start => all[0] = (mesh.middle(&ends.start), false),
-                    Next::End => {}
+                    Next::Ends => {}
                     Next::Limbs(roots, goes_on) => {
                         let leaves: Vec<usize> = roots.iter().map(|(leaf, _)| *leaf).collect();
                         ends.set_off(&leaves, goes_on);
@@ -191,6 +191,7 @@ impl Mesh {
                 }
             };
             if off.is_empty() {
+                all[0] = (mesh.middle(&ends.start), ends.start.open);
                 all.extend(ends.others.iter().map(|tip| (mesh.middle(tip), tip.open)));
                 break pieces;
             }
@@ -255,7 +256,7 @@ impl Mesh {
             && far_apart(&roots.iter().map(|(_, root)| (root.middle, root.girth)).collect::<Vec<_>>())
             && ends.add_between(self, middle(&roots), false, row).is_some()
         {
-            return Ok(Next::End);
+            return Ok(Next::Ends);
         }
         let goes_on = roots.pop().map(|(leaf, _)| leaf);
         let found = plan.start.is_none() && !ends.start.open && !ends.start.between;
@@ -271,26 +272,24 @@ impl Mesh {
                 && far_apart(&places)
                 && ends.add_between(self, first, true, row).is_some()
             {
-                return Ok(Next::Start);
+                return Ok(Next::Ends);
             }
         }
         Ok(Next::Limbs(roots, goes_on))
     }
 
-    /// The field, with every closed end at its extremum. The farthest point of a bent limb lies on its inner side, so
-    /// the flow is poured a second time around where the first one says that the middle is.
+    /// The field, with every closed end at its extremum. The farthest point of a limb lies to one side of its end, so the
+    /// flow is poured again around where the first one says that the middle is.
     fn flow(&self, plan: &Plan, flows: &mut Flows<'_>, ends: &mut Ends) -> Vec<f64> {
-        let places = |ends: &Ends| -> Vec<DVec3> {
-            ends.others.iter().chain([&ends.start]).map(|tip| self.middle(tip)).collect()
-        };
-        let before = places(ends);
-        let field = flows.field(plan.field, ends);
-        self.climb(&field, ends);
-        let far = |(a, b): (&DVec3, &DVec3)| a.distance(*b) > 0.5 * plan.gauge.height;
-        if !before.iter().zip(&places(ends)).any(far) {
-            return field;
+        let mut field = flows.field(plan.field, ends);
+        let found = [plan.start.is_none(), plan.poles.is_empty()];
+        for _ in 0..POURS {
+            self.climb(&field, ends);
+            if plan.field != Field::Harmonic || !self.centered(&field, ends, found, 0.5 * plan.gauge.height) {
+                return field;
+            }
+            field = flows.field(plan.field, ends);
         }
-        let field = flows.field(plan.field, ends);
         self.climb(&field, ends);
         field
     }

@@ -283,7 +283,7 @@ impl Mesh {
     }
 
     /// The vertices above a level that hang together with a tip.
-    fn reached(&self, field: &[f64], level: f64, tip: &Tip) -> Vec<bool> {
+    pub(super) fn reached(&self, field: &[f64], level: f64, tip: &Tip) -> Vec<bool> {
         let mut inside = vec![false; self.points.len()];
         let mut open = tip.ring.clone();
         for vertex in &open {

@@ -13,6 +13,7 @@ mod holes;
 mod levels;
 mod limb;
 mod link;
+mod middle;
 mod patch;
 mod slice;
 mod solver;

@@ -33,6 +33,11 @@ impl Way {
         a + t * (b - a)
     }
 
+    /// Length of the whole way.
+    pub(super) fn total(&self) -> f64 {
+        self.lengths.last().copied().unwrap_or(0.0)
+    }
+
     /// Length between two levels.
     pub(super) fn length(&self, low: f64, high: f64) -> f64 {
         (self.down_to(low) - self.down_to(high)).max(0.0)
@@ -40,7 +45,7 @@ impl Way {
 
     /// The level at a distance from the end, or from the start.
     pub(super) fn level(&self, field: &impl Fn(u32) -> f64, distance: f64, from_end: bool) -> f64 {
-        let total = self.lengths.last().copied().unwrap_or(0.0);
+        let total = self.total();
         let distance = distance.min(0.3 * total);
         let target = if from_end { distance } else { total - distance };
         let i =
