@@ -27,6 +27,7 @@ pub use bezier::Bezier;
 pub use drift::{Drift, Twisted, for_maker};
 pub use measure::{area, girth, is_revolution, length_along};
 pub use mirror::Mirrored;
+pub(crate) use mirror::Reversed;
 pub use ring::Ring;
 pub use spec::{Fault, Interpolation, Profile, Section, TubeSpec};
 pub use stack::Stack;

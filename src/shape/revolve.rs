@@ -1,5 +1,6 @@
 //! Stacks that are all but round: made exactly round, so that they get the even repeats of a designer.
 
+use super::End;
 use super::stack::Stack;
 use crate::math::{TAU, sin_cos};
 use glam::{DVec2, DVec3};
@@ -7,52 +8,279 @@ use glam::{DVec2, DVec3};
 /// Greatest distance from a round tube, in stitch widths, and as a share of the radius for tubes of many stitches.
 const TOLERANCE: f64 = 0.2;
 const SHARE: f64 = 0.02;
+/// Steps in which the axis is moved to where the surface lies best around it; and how firmly it stays where that is all one,
+/// as it is on a ball.
+const STEPS: usize = 4;
+const STAYS: f64 = 1e-3;
+/// Stretches of the meridian to both sides on which the foot of a point is sought.
+const BESIDE: usize = 3;
 
 impl Stack {
     /// Makes the tube a surface of revolution when it is one but for less than what stitches of this width can show.
-    /// True when it is.
-    pub(crate) fn revolve(&mut self, width: f64) -> bool {
+    /// The lines that it is a stack of need not be level: it is the surface that counts. True when it is one.
+    ///
+    /// `corners` are those of the triangles that it was cut from, if it was: the lines lie on the triangles, a little inside
+    /// of what these stand for.
+    pub(crate) fn revolve(&mut self, width: f64, corners: &[DVec3]) -> bool {
+        let Some((axis, meridian, first)) = self.round(width) else { return false };
+        let meridian = drawn_to(&meridian, corners.iter().map(|p| axis.split(*p).0), TOLERANCE * width);
+        let around = self.rows().next().map_or(1, <[DVec3]>::len);
+        // Clockwise seen from the end of the tube.
+        let second = -axis.way.cross(first);
+        self.set(|row, k| {
+            let (sin, cos) = sin_cos(TAU * k as f64 / around as f64);
+            let place = meridian[row];
+            axis.origin + axis.way * place.x + (first * cos + second * sin) * place.y
+        });
+        self.respace();
+        true
+    }
+
+    /// The axis of a tube that is round within the tolerance, its meridian, and where its first line lies around it.
+    fn round(&self, width: f64) -> Option<(Axis, Vec<DVec2>, DVec3)> {
         let rows: Vec<&[DVec3]> = self.rows().collect();
-        let around = rows.first().map_or(1, |row| row.len());
+        let closed = self.ends().map(|end| end == End::Closed);
+        let mut axis = Axis::of(&rows)?;
+        for _ in 0..STEPS {
+            axis = axis.moved(&rows, &axis.meridian(&rows, closed))?;
+        }
+        let meridian = axis.meridian(&rows, closed);
+        for (i, row) in rows.iter().enumerate() {
+            let most = (TOLERANCE * width).max(SHARE * meridian[i].y);
+            if row.iter().any(|p| foot(&meridian, i, axis.split(*p).0).0.length() > most) {
+                return None;
+            }
+        }
+        let widest = (0..rows.len()).max_by(|a, b| meridian[*a].y.total_cmp(&meridian[*b].y))?;
+        let first = rows[widest].first().map(|p| axis.split(*p).1)?;
+        (first != DVec3::ZERO).then_some((axis, meridian, first))
+    }
+}
+
+/// A line in space.
+#[derive(Clone, Copy, Debug)]
+struct Axis {
+    origin: DVec3,
+    way: DVec3,
+}
+
+impl Axis {
+    /// Through the middles of the rows, across them.
+    fn of(rows: &[&[DVec3]]) -> Option<Self> {
         // Twice the area of each row as a vector, all of them summed: the axis, against the sense of v.
         let area = |row: &[DVec3]| -> DVec3 {
             row.iter().zip(row.iter().cycle().skip(1)).map(|(a, b)| (*a - row[0]).cross(*b - row[0])).sum()
         };
-        let areas: Vec<DVec3> = rows.iter().map(|row| area(row)).collect();
-        let axis = -areas.iter().sum::<DVec3>().normalize_or_zero();
-        if axis == DVec3::ZERO {
-            return false;
-        }
-        let center = |row: &[DVec3]| row.iter().sum::<DVec3>() / around as f64;
-        let weight: f64 = areas.iter().map(|area| area.length()).sum();
-        let centers = rows.iter().zip(&areas).map(|(row, area)| center(row) * area.length());
-        let origin = centers.sum::<DVec3>() / weight;
-        let split = |p: DVec3| {
-            let arm = p - origin;
-            let height = arm.dot(axis);
-            (height, arm - axis * height)
-        };
-        let mut meridian = Vec::with_capacity(rows.len());
-        for row in &rows {
-            let mean = |f: &dyn Fn(DVec3) -> f64| row.iter().map(|p| f(*p)).sum::<f64>() / around as f64;
-            let (height, radius) = (mean(&|p| split(p).0), mean(&|p| split(p).1.length()));
-            let off = |p: &DVec3| DVec2::new(split(*p).0 - height, split(*p).1.length() - radius).length();
-            let most = row.iter().map(off).fold(0.0, f64::max);
-            if most > (TOLERANCE * width).max(SHARE * radius) {
-                return false;
+        let way = -rows.iter().map(|row| area(row)).sum::<DVec3>().normalize_or_zero();
+        let center = |row: &[DVec3]| row.iter().sum::<DVec3>() / row.len() as f64;
+        let weight: f64 = rows.iter().map(|row| area(row).length()).sum();
+        let origin = rows.iter().map(|row| center(row) * area(row).length()).sum::<DVec3>() / weight;
+        (way != DVec3::ZERO).then_some(Self { origin, way })
+    }
+
+    /// Height along the axis and distance from it; and the direction away from it.
+    fn split(&self, p: DVec3) -> (DVec2, DVec3) {
+        let arm = p - self.origin;
+        let height = arm.dot(self.way);
+        let out = arm - self.way * height;
+        let radius = out.length();
+        (DVec2::new(height, radius), if radius > 0.0 { out / radius } else { DVec3::ZERO })
+    }
+
+    /// Mean height and mean radius of each row; a closed end lies on the axis.
+    fn meridian(&self, rows: &[&[DVec3]], closed: [bool; 2]) -> Vec<DVec2> {
+        let mean =
+            |row: &[DVec3]| row.iter().map(|p| self.split(*p).0).sum::<DVec2>() / row.len().max(1) as f64;
+        let mut meridian: Vec<DVec2> = rows.iter().map(|row| mean(row)).collect();
+        let [first, last] = closed;
+        meridian.first_mut().filter(|_| first).into_iter().for_each(|place| place.y = 0.0);
+        meridian.last_mut().filter(|_| last).into_iter().for_each(|place| place.y = 0.0);
+        meridian
+    }
+
+    /// The axis around which the rows lie nearer to the meridian: a step of Gauss and Newton.
+    ///
+    /// Moved by t and tilted by w, both across it, it sees a point at height h and radius r in direction e at h + r e w and
+    /// r - e t - h e w. All around a row e e' is half the identity across the axis, so the equations are two by two.
+    fn moved(self, rows: &[&[DVec3]], meridian: &[DVec2]) -> Option<Self> {
+        let (mut tt, mut tw, mut ww) = (0.0, 0.0, 0.0);
+        let (mut shift, mut tilt) = (DVec3::ZERO, DVec3::ZERO);
+        for (i, row) in rows.iter().enumerate() {
+            for p in *row {
+                let (place, out) = self.split(*p);
+                let (off, normal) = foot(meridian, i, place);
+                let off = off.dot(normal);
+                let turn = normal.x * place.y - normal.y * place.x;
+                // Samples are denser where a row is short.
+                let weight = place.y;
+                tt += 0.5 * weight * normal.y * normal.y;
+                tw += 0.5 * weight * normal.y * turn;
+                ww += 0.5 * weight * turn * turn;
+                shift += out * (weight * normal.y * off);
+                tilt -= out * (weight * turn * off);
             }
-            meridian.push((height, radius));
         }
-        let widest = (0..rows.len()).max_by(|a, b| meridian[*a].1.total_cmp(&meridian[*b].1)).unwrap_or(0);
-        let Some(first) = rows[widest].first().map(|p| split(*p).1.normalize_or_zero()) else { return false };
-        // Clockwise seen from the end of the tube.
-        let second = -axis.cross(first);
-        self.set(|row, k| {
-            let (sin, cos) = sin_cos(TAU * k as f64 / around as f64);
-            let (height, radius) = meridian[row];
-            origin + axis * height + (first * cos + second * sin) * radius
-        });
-        self.respace();
-        true
+        let (tt, ww) = (tt * (1.0 + STAYS), ww * (1.0 + STAYS));
+        let determinant = tt * ww - tw * tw;
+        let origin = self.origin + (shift * ww + tilt * tw) / determinant;
+        let way = (self.way + (tilt * tt + shift * tw) / determinant).normalize_or_zero();
+        (origin.is_finite() && way != DVec3::ZERO).then_some(Self { origin, way })
+    }
+}
+
+/// The meridian moved across itself to where the places near it lie on average; those that are farther off than `reach` do
+/// not count.
+fn drawn_to(meridian: &[DVec2], places: impl Iterator<Item = DVec2>, reach: f64) -> Vec<DVec2> {
+    let stretches: Vec<Stretch> = (1..meridian.len()).map(|i| Stretch::new(meridian, i)).collect();
+    // By height, or what is flat by radius, so that few have to be looked at.
+    let range = |key: fn(&DVec2) -> f64| {
+        let all = || meridian.iter().map(key);
+        [all().fold(f64::INFINITY, f64::min) - reach, all().fold(f64::NEG_INFINITY, f64::max) + reach]
+    };
+    let (along, across) = (range(|place| place.x), range(|place| place.y));
+    let flat = along[1] - along[0] < across[1] - across[0];
+    let [low, high] = if flat { across } else { along };
+    let key = |place: &DVec2| if flat { place.y } else { place.x };
+    let count = stretches.len();
+    let bin = |key: f64| (((key - low) / (high - low) * count as f64) as usize).min(count - 1);
+    let mut bins = vec![Vec::new(); count];
+    for (i, pair) in meridian.windows(2).enumerate() {
+        let [a, b] = [key(&pair[0]), key(&pair[1])];
+        bins[bin(a.min(b) - reach)..=bin(a.max(b) + reach)].iter_mut().for_each(|bin| bin.push(i));
+    }
+    let mut sums = vec![[0.0; 2]; meridian.len()];
+    for place in places.filter(|place| (low..=high).contains(&key(place))) {
+        let near = bins[bin(key(&place))].iter().map(|i| (*i, stretches[*i].foot(place)));
+        let Some((i, (t, off))) = near.min_by(|a, b| a.1.1.abs().total_cmp(&b.1.1.abs())) else { continue };
+        if off.abs() <= reach {
+            for (node, weight) in [(i, 1.0 - t), (i + 1, t)] {
+                sums[node][0] += weight * off;
+                sums[node][1] += weight;
+            }
+        }
+    }
+    let last = meridian.len() - 1;
+    let normal = |i: usize| {
+        let around = [i.checked_sub(1), (i < last).then_some(i)].into_iter().flatten();
+        around.map(|i| stretches[i].normal).sum::<DVec2>().normalize_or_zero()
+    };
+    let moved = |(i, [sum, weight]): (usize, &[f64; 2])| {
+        let on_axis = meridian[i].y == 0.0;
+        let normal = if on_axis { DVec2::new(normal(i).x.signum(), 0.0) } else { normal(i) };
+        meridian[i] + normal * if *weight > 0.0 { sum / weight } else { 0.0 }
+    };
+    sums.iter().enumerate().map(moved).collect()
+}
+
+/// One stretch of a meridian, between two rows.
+struct Stretch {
+    from: DVec2,
+    along: DVec2,
+    normal: DVec2,
+    /// How far it bulges along the normal: 4 t (1 - t) times this.
+    bulge: f64,
+}
+
+impl Stretch {
+    /// The one that ends at row `i`.
+    fn new(meridian: &[DVec2], i: usize) -> Self {
+        let (from, to) = (meridian[i - 1], meridian[i]);
+        let along = to - from;
+        let normal = DVec2::new(along.y, -along.x).normalize_or_zero();
+        // Beyond a pole the meridian goes on as its mirror image.
+        let beyond = |other: Option<&DVec2>, end: DVec2, inner: DVec2| {
+            other.copied().or((end.y == 0.0).then_some(DVec2::new(inner.x, -inner.y)))
+        };
+        let before = beyond(i.checked_sub(2).and_then(|i| meridian.get(i)), from, to);
+        let after = beyond(meridian.get(i + 1), to, from);
+        // Second derivative by t, from three rows.
+        let bend = |a: DVec2, b: DVec2, c: DVec2| {
+            let (left, right) = (a.distance(b).max(1e-12), b.distance(c).max(1e-12));
+            ((c - b) / right - (b - a) / left) * (2.0 / (left + right))
+        };
+        let bends = [before.map(|before| bend(before, from, to)), after.map(|after| bend(from, to, after))];
+        let known = bends.iter().flatten().count().max(1) as f64;
+        let mean = bends.into_iter().flatten().sum::<DVec2>() / known;
+        Self { from, along, normal, bulge: -mean.dot(normal) * along.length_squared() / 8.0 }
+    }
+
+    /// How far along the stretch the foot of a place lies, and how far off the place is; infinitely where it is beside.
+    fn foot(&self, place: DVec2) -> (f64, f64) {
+        let arm = place - self.from;
+        let t = (arm.dot(self.along) / self.along.length_squared()).clamp(0.0, 1.0);
+        let off = arm - self.along * t;
+        let beside = off.dot(self.along).abs() > 0.1 * self.along.length_squared();
+        let off = off.dot(self.normal) - 4.0 * t * (1.0 - t) * self.bulge;
+        (t, if beside || off.is_nan() { f64::INFINITY } else { off })
+    }
+}
+
+/// From the meridian near a row of it to a place: the shortest way, and the normal of the stretch that it starts from.
+fn foot(meridian: &[DVec2], row: usize, place: DVec2) -> (DVec2, DVec2) {
+    let last = meridian.len() - 1;
+    let near = &meridian[row.saturating_sub(BESIDE)..=(row + BESIDE).min(last)];
+    let mut best = (place - meridian[row], DVec2::ZERO);
+    for pair in near.windows(2) {
+        let along = pair[1] - pair[0];
+        let square = along.length_squared();
+        if square > 0.0 {
+            let t = ((place - pair[0]).dot(along) / square).clamp(0.0, 1.0);
+            let off = place - pair[0] - along * t;
+            if off.length_squared() <= best.0.length_squared() || best.1 == DVec2::ZERO {
+                best = (off, DVec2::new(along.y, -along.x) / square.sqrt());
+            }
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math;
+    use crate::shape::ring::Ring;
+    use crate::shape::{ParametricSurface, is_revolution};
+
+    /// A tube around a slanting axis, whose lines are tilted and whose first pole lies off it; `flat` as deep as wide.
+    fn leaning(flat: f64) -> (Axis, Stack) {
+        let axis = Axis { origin: DVec3::new(3.0, -2.0, 5.0), way: DVec3::new(0.3, -0.2, 0.9).normalize() };
+        let first = axis.way.any_orthonormal_vector();
+        let second = -axis.way.cross(first) * flat;
+        let radius = |height: f64| 20.0 * (1.0 - (height / 30.0) * (height / 30.0)).max(0.0).sqrt();
+        let place = |height: f64, k: u32| {
+            let (sin, cos) = sin_cos(TAU * f64::from(k) / 64.0);
+            let height = height + 0.03 * radius(height) * cos;
+            axis.origin + axis.way * height + (first * cos + second * sin) * radius(height)
+        };
+        let rings: Vec<Ring> = (1..16)
+            .map(|i| 30.0 * (f64::from(i) / 8.0 - 1.0))
+            .filter_map(|height| Ring::new((0..64).map(|k| place(height, k)).collect()))
+            .collect();
+        let poles = [place(-29.97, 0), axis.origin + axis.way * 30.0].map(Some);
+        (axis, Stack::new(&rings, poles, 32).expect("a tube"))
+    }
+
+    #[test]
+    fn what_is_round_gets_its_axis_though_its_lines_are_tilted() {
+        let (axis, mut stack) = leaning(1.0);
+        assert!(stack.revolve(5.0, &[]) && is_revolution(&stack));
+        for u in [0.0, 1.0] {
+            let off = axis.split(stack.point(u, 0.3)).0.y;
+            assert!(off < 0.1, "{off}");
+        }
+        let (_, mut stack) = leaning(0.9);
+        assert!(!stack.revolve(5.0, &[]));
+    }
+
+    #[test]
+    fn a_meridian_is_drawn_to_what_it_stands_for() {
+        let at = |angle: f64, radius: f64| DVec2::new(-math::cos(angle), math::sin(angle)) * radius;
+        let half = math::PI;
+        let mut inside: Vec<DVec2> = (0..=12).map(|i| at(half * f64::from(i) / 12.0, 9.8)).collect();
+        inside.iter_mut().step_by(12).for_each(|pole| pole.y = 0.0);
+        let places = (0..=400).map(|i| at(half * f64::from(i) / 400.0, 10.0));
+        for place in drawn_to(&inside, places, 1.0) {
+            assert!((place.length() - 10.0).abs() < 0.02, "{place}");
+        }
     }
 }

@@ -14,7 +14,7 @@ use crate::shape::measure::area_of;
 use crate::shape::ring::Ring;
 use crate::shape::solid::Solid;
 use crate::shape::stack::Stack;
-use crate::shape::{Attachment, End, Joint, ParametricSurface};
+use crate::shape::{Attachment, End, Joint, ParametricSurface, Reversed, is_revolution};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -200,7 +200,14 @@ impl Mesh {
             (rest, ends) = (Some(smaller), fewer);
         };
         // What is made side by side there is handed over more quickly from within.
-        let pieces = rayon::scope(|_| grow(pieces, limbs, plan))?;
+        let mut pieces = rayon::scope(|_| grow(pieces, limbs, plan))?;
+        if plan.start.is_none() && plan.poles.is_empty() {
+            let turned;
+            (pieces, turned) = from_its_pole(pieces);
+            if turned {
+                all.reverse();
+            }
+        }
         Ok(Cut { pieces, ends: all, dropped })
     }
 
@@ -362,7 +369,7 @@ impl Mesh {
                 return Err(Fault::NoRows { at: self.middle(tip) });
             };
             if parent.is_none() && division.is_none() {
-                stack.revolve(plan.gauge.width);
+                stack.revolve(plan.gauge.width, &self.points);
             }
             let here = pieces.len();
             let ends = stack.ends();
@@ -478,6 +485,20 @@ fn grow(mut pieces: Vec<Piece>, limbs: Vec<limb::Limb>, plan: &Plan) -> Result<V
         });
     }
     Ok(pieces)
+}
+
+/// Turns a single round tube that begins at an opening and ends at a pole, so that it begins with the ring of the pole, as
+/// bowls and hats do. Also tells whether it is one.
+fn from_its_pole(pieces: Vec<Piece>) -> (Vec<Piece>, bool) {
+    let [Piece { ends: [End::Open, End::Closed], surface, .. }] = pieces.as_slice() else {
+        return (pieces, false);
+    };
+    if !is_revolution(&**surface) {
+        return (pieces, false);
+    }
+    let turned =
+        |it: Piece| Piece { surface: Box::new(Reversed(it.surface)), ends: [End::Closed, End::Open], ..it };
+    (pieces.into_iter().map(turned).collect(), true)
 }
 
 /// The greatest value of the field.

@@ -77,7 +77,7 @@ impl Mesh {
         let around = (1.5 * most / plan.gauge.width).clamp(48.0, 256.0) as usize;
         let mut stack =
             Stack::new(&rings, poles, around.next_multiple_of(32)).ok_or(Fault::NoRows { at: last })?;
-        stack.revolve(plan.gauge.width);
+        stack.revolve(plan.gauge.width, &self.points);
         Ok(Cut {
             pieces: vec![Piece {
                 name: "trunk".to_owned(),
