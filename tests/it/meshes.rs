@@ -148,32 +148,67 @@ fn triangles(surface: &dyn ParametricSurface, closed: [bool; 2]) -> Solid {
     Solid::tube(&rings, [pole(0, 0.0), pole(1, 1.0)])
 }
 
+/// The stitch count of the ring or chain and of each round, as patterns state it.
+fn counts(program: &Program) -> Vec<usize> {
+    let mut sink = Sink::new();
+    let verified = verify(program, &mut sink).expect("a sound pattern");
+    let facts = &verified.facts().parts[0];
+    let rows = program.pattern.parts[0].rows.iter().zip(&facts.rows);
+    let counts = rows.flat_map(|(row, facts)| (0..row.times).map(|_| facts.produces));
+    std::iter::once(facts.start).chain(counts).map(|count| count as usize).collect()
+}
+
+/// The rounds of a shape file, and those of its surface as triangles.
+fn rounds_of_both(name: &str) -> [Vec<usize>; 2] {
+    let path = format!("{}/shapes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    #[expect(clippy::disallowed_methods, reason = "tests read their cases from the disk")]
+    let text = std::fs::read(path).expect("readable");
+    let shape = load("x.toml", &text, &Options::default()).0.expect("a sound file");
+    let closed = [shape.tubes[0].start, shape.tubes[0].end].map(|end| end == End::Closed);
+    let solid = triangles(&*shape.tubes[0].surface, closed);
+    let settings = Options { gauge: Some(shape.gauge), ..options(1.0) };
+    let cut = load("x.obj", &solid.obj(), &settings).0.expect("a sound mesh");
+    let (_, one) = pattern(shape, &Options::default());
+    let (_, other) = pattern(cut, &settings);
+    [counts(&one), counts(&other)]
+}
+
+/// Rounds of which one has more stitches than the other by more than one and by more than 3 %.
+fn apart(one: &[usize], other: &[usize]) -> usize {
+    let far = |(one, other): &(&usize, &usize)| one.abs_diff(**other) > (**one * 3 / 100).max(1);
+    one.iter().zip(other).filter(far).count()
+}
+
 #[test]
 fn a_shape_file_and_its_mesh_agree() {
-    for name in ["ball", "capsule", "pear", "bottle"] {
-        let path = format!("{}/shapes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-        #[expect(clippy::disallowed_methods, reason = "tests read their cases from the disk")]
-        let text = std::fs::read(path).expect("readable");
-        let shape = load("x.toml", &text, &Options::default()).0.expect("a sound file");
-        let closed = [shape.tubes[0].start, shape.tubes[0].end].map(|end| end == End::Closed);
-        let solid = triangles(&*shape.tubes[0].surface, closed);
-        let settings = Options { gauge: Some(shape.gauge), ..options(1.0) };
-        let cut = load("x.obj", &solid.obj(), &settings).0.expect("a sound mesh");
-        let (_, one) = pattern(shape, &Options::default());
-        let (_, other) = pattern(cut, &settings);
-        let (mut one, mut other) = (rounds(&one), rounds(&other));
-        // A mesh does not say at which end to begin.
-        let off = |a: &[usize], b: &[usize]| -> usize { a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).sum() };
-        let turned: Vec<usize> = other.iter().rev().copied().collect();
-        if off(&one, &turned) < off(&one, &other) {
-            other = turned;
+    let names = [
+        "ball",
+        "egg",
+        "capsule",
+        "bowl",
+        "vase",
+        "beanie",
+        "mushroom-cap",
+        "mushroom-stem",
+        "cylinder",
+        "horn",
+    ];
+    for name in names {
+        let [one, other] = rounds_of_both(name);
+        assert_eq!((one.len(), apart(&one, &other)), (other.len(), 0), "{name}: {one:?} {other:?}");
+    }
+    // A round or two may be shaped a little earlier or later at the same price, and so may short rows lie; and a mesh does not
+    // say where to begin.
+    for (name, turned) in
+        [("pear", false), ("bottle", false), ("elbow", false), ("paper/d", false), ("cone", true)]
+    {
+        let [one, mut other] = rounds_of_both(name);
+        if turned {
+            other.reverse();
         }
-        let least = one.len().min(other.len());
-        assert!(one.len().abs_diff(other.len()) <= 1, "{name}: {one:?} {other:?}");
-        one.truncate(least);
-        other.truncate(least);
-        let share = off(&one, &other) as f64 / one.iter().sum::<usize>() as f64;
-        assert!(share < 0.03, "{name}: {one:?} {other:?}");
+        let more = one.len().abs_diff(other.len());
+        assert!(more <= usize::from(name == "paper/d"), "{name}: {one:?} {other:?}");
+        assert!(apart(&one, &other) <= 2, "{name}: {one:?} {other:?}");
     }
 }
 
@@ -492,8 +527,34 @@ fn openings_are_ends() {
     let rings: Vec<Vec<DVec3>> = (0..16).map(|i| circle(20.0, 4.0 * f64::from(i), 24)).collect();
     let shape = shape_of(&Solid::tube(&rings, [None, None]), 5.0);
     assert_eq!((shape.tubes.len(), shape.tubes[0].start, shape.tubes[0].end), (1, End::Open, End::Open));
-    let cup = shape_of(&Solid::tube(&rings, [None, Some(v(0., 0., 62.))]), 5.0);
-    assert_eq!((cup.tubes[0].start, cup.tubes[0].end), (End::Open, End::Closed));
+    // What is round begins at its pole, unless the file says otherwise.
+    let cup = Solid::tube(&rings, [None, Some(v(0., 0., 62.))]);
+    let ends = |shape: &Shape| (shape.tubes[0].start, shape.tubes[0].end);
+    assert_eq!(ends(&shape_of(&cup, 5.0)), (End::Closed, End::Open));
+    let text = b"unit = \"mm\"\n[gauge]\nstitch = { width = 5, height = 5 }\n[mesh]\nfile = \"cup.obj\"\nstart = [0, 0, 0]\n";
+    let named = load_beside("cup.toml", text, &Options::default(), &|_| Ok(cup.obj())).0.expect("a cup");
+    assert_eq!(ends(&named), (End::Open, End::Closed));
+    let oval: Vec<Vec<DVec3>> =
+        rings.iter().map(|ring| ring.iter().map(|p| *p * v(1.0, 0.7, 1.0)).collect()).collect();
+    let oval = shape_of(&Solid::tube(&oval, [None, Some(v(0., 0., 62.))]), 5.0);
+    assert_eq!(ends(&oval), (End::Open, End::Closed));
+}
+
+/// Poles of the limbs lie in the middles of their round ends, however they hang on the body.
+#[test]
+fn poles_lie_on_the_axes_of_limbs() {
+    let limbs = [(v(20., 0., 15.), v(66., 0., -5.), 10.0), (v(-14., 0., -25.), v(-24., 0., -80.), 12.0)];
+    let formula = |p: DVec3| {
+        let body = capsule(p, v(0., 0., -10.), v(0., 0., 50.), 28.0);
+        limbs.iter().fold(body, |body, (a, b, radius)| union(body, capsule(p, *a, *b, *radius), 6.0))
+    };
+    let shape = shape_of(&Solid::level_set(formula, v(-40., -32., -95.), v(80., 32., 82.), 3.0), 4.0);
+    for (a, b, radius) in limbs {
+        let tip = b + (b - a).normalize() * radius;
+        let ends = shape.tubes.iter().flat_map(|tube| [0.0, 1.0].map(|u| tube.surface.point(u, 0.0)));
+        let off = ends.map(|end| end.distance(tip)).fold(f64::INFINITY, f64::min);
+        assert!(off < 3.5, "{off} off {tip}");
+    }
 }
 
 #[test]
@@ -573,6 +634,21 @@ fn many_small_triangles_are_joined_without_a_loss() {
     assert!((0.97..=1.03).contains(&covered), "{covered}");
     let off: usize = fine.iter().zip(&plain).map(|(a, b)| a.abs_diff(*b)).sum();
     assert!(fine.len() == plain.len() && off * 33 < plain.iter().sum(), "{fine:?} {plain:?}");
+}
+
+/// Edges of a coarser mesh cut a thin tube short; its lines do not.
+#[test]
+fn joined_triangles_keep_the_girth_of_a_thin_tube() {
+    let oval = |k: u32| -> Vec<DVec3> {
+        circle(12.0, f64::from(k) * 0.5, 96).into_iter().map(|p| p * v(1.0, 0.8, 1.0)).collect()
+    };
+    let around = |ring: &[DVec3]| -> f64 {
+        ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| a.distance(*b)).sum()
+    };
+    let rings: Vec<Vec<DVec3>> = (0..=160).map(oval).collect();
+    let shape = shape_of(&Solid::tube(&rings, [None, None]), 5.0);
+    let share = girth(&*shape.tubes[0].surface, 0.5, 64) / around(&oval(0));
+    assert!((0.99..1.003).contains(&share), "{share}");
 }
 
 /// An arm that leaves the side and bends up is no half of what it leaves.
@@ -655,16 +731,19 @@ fn a_shape_file_with_branches_and_its_mesh_agree() {
         let name = format!("part {part}: {one:?} {other:?}");
         // Short rows of one take the place of rounds of the other.
         let sums = [&one, &other].map(|rounds| rounds.iter().sum::<usize>() as f64);
-        let rows = if part == 0 { 1 } else { 2 };
-        assert!(one.len().abs_diff(other.len()) <= rows, "{name}");
+        assert!(one.len().abs_diff(other.len()) <= 2, "{name}");
         assert!((sums[1] / sums[0] - 1.0).abs() < 0.03, "{name}");
-        // Away from its ends every round has as many stitches, within 3 % or one; a short row goes over some twice.
+        if part == 0 {
+            assert_eq!((one.len(), apart(&one, &other)), (other.len(), 0), "{name}");
+            continue;
+        }
+        // Away from its ends every round has as many stitches, within 3 % or one. A short row goes over some twice, and the
+        // rounds beside it make up for what it adds on one side.
         let middle = one.len() / 4..one.len() * 3 / 5;
-        let pairs: Vec<(usize, usize)> =
-            one[middle.clone()].iter().copied().zip(other[middle].iter().copied()).collect();
-        let short = pairs.iter().filter(|(one, other)| 3 * other > 4 * one).count();
-        let alike =
-            pairs.iter().filter(|(one, other)| one.abs_diff(*other) <= (one * 3 / 100).max(1)).count();
-        assert!(short <= 1 && short + alike == pairs.len(), "{name}");
+        let short = |i: usize| other[i] * 3 > one[i] * 4;
+        let plain = middle.clone().filter(|i| !(i - 1..=i + 1).any(short));
+        let rounds: Vec<usize> = plain.collect();
+        assert!(2 * rounds.len() >= middle.len(), "{name}");
+        assert!(rounds.iter().all(|i| apart(&one[*i..=*i], &other[*i..=*i]) == 0), "{name}");
     }
 }
