@@ -53,6 +53,8 @@ const OVERHANG: [f64; 2] = [-0.02, 1.06];
 /// At a pole they keep this share of the first row's distance.
 const POLE_DISTANCE: f64 = 0.3;
 
+/// Factor of the weight of square tiles in even rounds without and with one or two open ends: there lengths can give.
+const EVEN_SQUARENESS: [f64; 3] = [0.9, 1.0, 1.1];
 /// Rows by which a given first row counts as higher, for each turn that a try would turn another one by.
 const LIFT: f64 = 1.0;
 
@@ -381,6 +383,7 @@ impl<'s> Ground<'s> {
         });
         let free = if self.poles[0].is_some() { 0 } else { start };
         let top = sheet.len() - counts[counts.len() - 1] as usize;
+        let square = EVEN_SQUARENESS[self.poles.iter().filter(|pole| pole.is_none()).count()];
         let all = Stretch::since(Mark { nodes: free, ..Mark::default() }, &sheet);
         let nodes = sheet.len();
         Relaxer::default().relax(
@@ -388,7 +391,7 @@ impl<'s> Ground<'s> {
             &mut sheet,
             all,
             0,
-            Effort { sweeps: options.sweeps_over(nodes), squareness: options.squareness },
+            Effort { sweeps: options.sweeps_over(nodes), squareness: options.squareness * square },
             Ends {
                 range: self.range,
                 ring: self.poles[0].map(|pole| (pole, start)),

@@ -7,9 +7,9 @@ use serde::Deserialize;
 
 /// From the first to the second of these numbers of nodes parts get more and more sweeps, up to so many times more; from the third
 /// to the fourth less and less of them.
-const SMALL: [usize; 2] = [1_050, 1_450];
+const SMALL: [usize; 2] = [800, 1_450];
 const LARGE: [usize; 2] = [5_500, 8_500];
-const LONGER: f64 = 1.5;
+const LONGER: f64 = 1.43;
 
 /// How far a number has come from the first to the second of two, as a share.
 fn past(number: usize, [from, to]: [usize; 2]) -> f64 {
@@ -48,7 +48,7 @@ pub struct Options {
     pub window: u32,
     /// Sweeps over the window after each row.
     pub window_sweeps: u32,
-    /// Sweeps over the whole part at the end; parts from some 1,000 to 8,000 stitches get up to two and a half times as many.
+    /// Sweeps over the whole part at the end; parts from 800 to 8,500 stitches get up to two and a half times as many.
     pub sweeps: u32,
     /// Weight of a square tile against exact lengths in the final sweeps: higher trades length error for skew.
     pub squareness: f64,

@@ -4,7 +4,7 @@
 use super::Laid;
 use super::options::{Options, Preset};
 use super::ridges;
-use super::score::{FEW_OF, Score, some_length_error};
+use super::score::{FEW_OF, Score, inverted, some_length_error};
 use super::sheet::Sheet;
 use super::staircase::Ridge;
 use crate::diag::Sink;
@@ -204,12 +204,11 @@ pub(super) fn best(
         return lay(&options, turn, Judge { tail: !part.harsh, ..first }, sink);
     }
     let scored = |laid: Laid| {
-        let mut score = Score::of(&laid.sheet, options.ease()).with_level(laid.spread);
-        // A few can be mended at the end.
-        if huge && score.inverted <= laid.sheet.len() / FEW_OF {
-            score.inverted = 0;
+        // A few can be mended at the end, and then nothing else is tried for.
+        if huge && inverted(&laid.sheet) <= laid.sheet.len() / FEW_OF {
+            return (Score::default(), laid);
         }
-        (score, laid)
+        (Score::of(&laid.sheet, options.ease()).with_level(laid.spread), laid)
     };
     let attempt = |index: usize, rescue: bool, judge: Judge, sink: &Sink<'_>| {
         let (options, turn) = part.variant(options, index, rescue);
