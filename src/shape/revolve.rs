@@ -12,6 +12,9 @@ const SHARE: f64 = 0.02;
 /// as it is on a ball.
 const STEPS: usize = 4;
 const STAYS: f64 = 1e-3;
+/// Points of a row that tell where the axis is; what is off by so many times the tolerance even so needs no steps.
+const FEW: usize = 32;
+const FAR: f64 = 8.0;
 /// Stretches of the meridian to both sides on which the foot of a point is sought.
 const BESIDE: usize = 3;
 
@@ -41,12 +44,22 @@ impl Stack {
         let rows: Vec<&[DVec3]> = self.rows().collect();
         let closed = self.ends().map(|end| end == End::Closed);
         let mut axis = Axis::of(&rows)?;
+        // Most tubes are not round by far.
+        let limit = |radius: f64| (TOLERANCE * width).max(SHARE * radius);
+        let rough = axis.meridian(&rows, closed);
+        let near = |(row, middle): (&&[DVec3], &DVec2)| {
+            let off = |p: &DVec3| (axis.split(*p).0.y - middle.y).abs();
+            middle.y == 0.0 || few(row).all(|p| off(p) <= FAR * limit(middle.y))
+        };
+        if !rows.iter().zip(&rough).all(near) {
+            return None;
+        }
         for _ in 0..STEPS {
             axis = axis.moved(&rows, &axis.meridian(&rows, closed))?;
         }
         let meridian = axis.meridian(&rows, closed);
         for (i, row) in rows.iter().enumerate() {
-            let most = (TOLERANCE * width).max(SHARE * meridian[i].y);
+            let most = limit(meridian[i].y);
             if row.iter().any(|p| foot(&meridian, i, axis.split(*p).0).0.length() > most) {
                 return None;
             }
@@ -55,6 +68,11 @@ impl Stack {
         let first = rows[widest].first().map(|p| axis.split(*p).1)?;
         (first != DVec3::ZERO).then_some((axis, meridian, first))
     }
+}
+
+/// Some points of a row, evenly around it.
+fn few(row: &[DVec3]) -> impl Iterator<Item = &DVec3> {
+    row.iter().step_by((row.len() / FEW).max(1))
 }
 
 /// A line in space.
@@ -106,7 +124,7 @@ impl Axis {
         let (mut tt, mut tw, mut ww) = (0.0, 0.0, 0.0);
         let (mut shift, mut tilt) = (DVec3::ZERO, DVec3::ZERO);
         for (i, row) in rows.iter().enumerate() {
-            for p in *row {
+            for p in few(row) {
                 let (place, out) = self.split(*p);
                 let (off, normal) = foot(meridian, i, place);
                 let off = off.dot(normal);
