@@ -1,5 +1,6 @@
 //! The baseline algorithm against figures of the published implementation.
 
+use crate::maker;
 use glam::{DVec2, DVec3};
 use picot::diag::Sink;
 use picot::generate::{Options, capunaman::capunaman, generate};
@@ -88,6 +89,41 @@ fn our_stitches_keep_length_skew_and_coverage() {
         (lengths, skews) = (lengths + length.mean_abs / 6.0, skews + skew.mean / 6.0);
     }
     assert!(lengths <= 0.034 && skews <= 0.077, "{lengths} {skews}");
+}
+
+/// Other shapes at three sizes each, held at what settling brings: mean length error and mean skew in percent.
+#[test]
+fn other_shapes_keep_length_and_skew() {
+    let cases: [(&str, &str, [(f64, f64); 3]); 4] = [
+        ("a", include_str!("../../shapes/paper/a.toml"), [(0.88, 2.7), (0.745, 2.35), (0.8, 2.4)]),
+        ("b", include_str!("../../shapes/paper/b.toml"), [(3.2, 7.9), (2.9, 7.0), (2.6, 6.6)]),
+        ("ball", include_str!("../../shapes/ball.toml"), [(2.5, 7.1), (2.5, 6.3), (2.2, 5.9)]),
+        ("cone", include_str!("../../shapes/cone.toml"), [(3.4, 7.05), (2.6, 6.6), (2.7, 5.8)]),
+    ];
+    for (name, file, bounds) in cases {
+        let shape = maker::shape(file);
+        for (width, (most_length, most_skew)) in [2.5, 2.0, 1.5].into_iter().zip(bounds) {
+            let gauge = Gauge::new(width, width);
+            let graph = generate(&shape.tubes[0], &gauge, &Options::default(), &mut Sink::new()).unwrap();
+            let measure = measure(&shape.tubes[0], &gauge, &graph);
+            let (length, skew) = (100.0 * measure.length_error.chord.mean_abs, 100.0 * measure.skew.all.mean);
+            assert!(length <= most_length && skew <= most_skew, "{name} {width}: {length} {skew}");
+            assert!(measure.inverted_tiles == 0 && measure.level.spread <= 0.8, "{name} {width}");
+        }
+    }
+}
+
+/// A part that settles by bands of rows fits as well as smaller ones, from end to end.
+#[test]
+fn a_part_of_many_bands_fits_too() {
+    let (tube, gauge) = (shape("d"), Gauge::new(0.25, 0.25));
+    let graph = generate(&tube, &gauge, &Options::default(), &mut Sink::new()).unwrap();
+    let measure = measure(&tube, &gauge, &graph);
+    let (length, skew, level) = (measure.length_error.chord.mean_abs, measure.skew.all.mean, measure.level);
+    assert!(graph.nodes.len() > 90_000, "{}", graph.nodes.len());
+    assert!(length <= 0.023 && skew <= 0.057, "{length} {skew}");
+    assert!(level.missing.abs() <= 0.2 && level.spread <= 0.4, "{level:?}");
+    assert!(measure.inverted_tiles == 0 && (measure.coverage - 1.0).abs() < 0.005);
 }
 
 /// On a cylinder that a whole number of stitches fits around and up, every edge is as long as the gauge asks.
