@@ -328,6 +328,14 @@ fn what_is_no_surface_is_refused() {
     let mut open = Solid::ball(30.0, 24);
     open.faces.remove(400);
     assert_eq!(codes("ball.obj", &open.obj()), ["E4105"]);
+    // A thousand holes are refused as soon: no ends are made of them.
+    let mut sieve = Solid::ball(50.0, 110);
+    let (mut number, around_poles) = (0, sieve.faces.len() - 440);
+    sieve.faces.retain(|_| {
+        number += 1;
+        number % 37 != 0 || number > around_poles
+    });
+    assert_eq!(codes("sieve.obj", &sieve.obj()), ["E4105"]);
 
     let mut strip = Solid::default();
     for i in 0..40_u32 {

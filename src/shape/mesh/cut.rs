@@ -46,6 +46,9 @@ const LEAVES: f64 = 1.0;
 /// How far (stitches) the first row of a limb may lie off the rim in which it meets its parent.
 const GIVE: f64 = 1.0;
 
+/// Most openings of a mesh that is cut while faulty ones are sought.
+const FEW_OPENINGS: usize = 8;
+
 /// How often flows are poured again at most.
 const POURS: u32 = 2;
 
@@ -110,6 +113,11 @@ type Waiting = (usize, Option<(usize, Ring)>, String);
 impl Mesh {
     /// Cuts the mesh into tubes. `progress` hears of steps done and of all there are, as far as they are known.
     pub fn cut(&self, plan: &Plan, mut progress: impl FnMut(u64, u64)) -> Result<Cut, Fault> {
+        // An end for each of many openings would cost more than the search for faulty ones.
+        if self.boundaries.len() > FEW_OPENINGS {
+            self.holes(plan)?;
+            return self.cut_coarse(plan, &mut progress);
+        }
         // Most often there is no fault, so the rest does not wait for the search.
         let mut holes = Ok(());
         let cut = rayon::in_place_scope(|scope| {
