@@ -113,8 +113,8 @@ type Waiting = (usize, Option<(usize, Ring)>, String);
 impl Mesh {
     /// Cuts the mesh into tubes. `progress` hears of steps done and of all there are, as far as they are known.
     pub fn cut(&self, plan: &Plan, mut progress: impl FnMut(u64, u64)) -> Result<Cut, Fault> {
-        // An end for each of many openings would cost more than the search for faulty ones.
-        if self.boundaries.len() > FEW_OPENINGS {
+        // On a large mesh, or with an end for each of many openings, what is in vain would cost more than the search.
+        if self.boundaries.len() > FEW_OPENINGS || self.faces.len() > MANY {
             self.holes(plan)?;
             return self.cut_coarse(plan, &mut progress);
         }
