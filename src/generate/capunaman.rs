@@ -62,13 +62,12 @@ impl Baseline {
         }
         let free = if tube.start == End::Closed { 0 } else { self.start() };
         let all = Stretch::since(Mark { nodes: free, ..Mark::default() }, &sheet);
-        let nodes = sheet.len();
         Relaxer::default().relax(
             surface,
             &mut sheet,
             all,
             0,
-            Effort { sweeps: options.sweeps_over(nodes), squareness: options.squareness },
+            Effort { sweeps: options.sweeps_over(all.until.nodes), squareness: options.squareness },
             Ends { range: [0.0, 1.0], ring: None, level: None, opens: false },
         );
         for (id, node) in self.nodes.iter_mut().enumerate() {

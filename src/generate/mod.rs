@@ -385,13 +385,12 @@ impl<'s> Ground<'s> {
         let top = sheet.len() - counts[counts.len() - 1] as usize;
         let square = EVEN_SQUARENESS[self.poles.iter().filter(|pole| pole.is_none()).count()];
         let all = Stretch::since(Mark { nodes: free, ..Mark::default() }, &sheet);
-        let nodes = sheet.len();
         Relaxer::default().relax(
             surface,
             &mut sheet,
             all,
             0,
-            Effort { sweeps: options.sweeps_over(nodes), squareness: options.squareness * square },
+            Effort { sweeps: options.sweeps_over(all.until.nodes), squareness: options.squareness * square },
             Ends {
                 range: self.range,
                 ring: self.poles[0].map(|pole| (pole, start)),

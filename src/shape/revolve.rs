@@ -46,18 +46,18 @@ impl Stack {
         let mut axis = Axis::of(&rows)?;
         // Most tubes are not round by far.
         let limit = |radius: f64| (TOLERANCE * width).max(SHARE * radius);
-        let rough = axis.meridian(&rows, closed);
+        let mut meridian = axis.meridian(&rows, closed);
         let near = |(row, middle): (&&[DVec3], &DVec2)| {
             let off = |p: &DVec3| (axis.split(*p).0.y - middle.y).abs();
             middle.y == 0.0 || few(row).all(|p| off(p) <= FAR * limit(middle.y))
         };
-        if !rows.iter().zip(&rough).all(near) {
+        if !rows.iter().zip(&meridian).all(near) {
             return None;
         }
         for _ in 0..STEPS {
-            axis = axis.moved(&rows, &axis.meridian(&rows, closed))?;
+            axis = axis.moved(&rows, &meridian)?;
+            meridian = axis.meridian(&rows, closed);
         }
-        let meridian = axis.meridian(&rows, closed);
         for (i, row) in rows.iter().enumerate() {
             let most = limit(meridian[i].y);
             if row.iter().any(|p| foot(&meridian, i, axis.split(*p).0).0.length() > most) {
@@ -89,10 +89,12 @@ impl Axis {
         let area = |row: &[DVec3]| -> DVec3 {
             row.iter().zip(row.iter().cycle().skip(1)).map(|(a, b)| (*a - row[0]).cross(*b - row[0])).sum()
         };
-        let way = -rows.iter().map(|row| area(row)).sum::<DVec3>().normalize_or_zero();
+        let areas: Vec<DVec3> = rows.iter().map(|row| area(row)).collect();
+        let way = -areas.iter().sum::<DVec3>().normalize_or_zero();
         let center = |row: &[DVec3]| row.iter().sum::<DVec3>() / row.len() as f64;
-        let weight: f64 = rows.iter().map(|row| area(row).length()).sum();
-        let origin = rows.iter().map(|row| center(row) * area(row).length()).sum::<DVec3>() / weight;
+        let weight: f64 = areas.iter().map(|area| area.length()).sum();
+        let centers = rows.iter().zip(&areas).map(|(row, area)| center(row) * area.length());
+        let origin = centers.sum::<DVec3>() / weight;
         (way != DVec3::ZERO).then_some(Self { origin, way })
     }
 

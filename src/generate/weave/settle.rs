@@ -100,9 +100,8 @@ impl Weaver<'_> {
         let ends = Ends { level, ..self.ends() };
         let exact = if self.quick() { 0 } else { usize::MAX };
         let end = Mark::of(&self.sheet);
-        let mut first = 0;
+        let mut from = self.free(Mark::default());
         loop {
-            let from = self.free(self.marks.get(first).copied().filter(|_| first > 0).unwrap_or_default());
             let next = self.marks.partition_point(|mark| mark.nodes < from.nodes + BAND);
             let until = self.marks.get(next + OVERLAP).copied().unwrap_or(end);
             let band = Stretch { from, until };
@@ -110,7 +109,7 @@ impl Weaver<'_> {
             if until.nodes == end.nodes {
                 break;
             }
-            first = next;
+            from = self.free(self.marks[next]);
         }
     }
 

@@ -362,7 +362,7 @@ impl Mesh {
                 high = ways[limb.leaf].level(&field_at, FIRST_RING * row, true);
             }
             let rings = levels.stack([low, high], &ways[limb.leaf].vertices, spacing, first, last.as_ref());
-            let around = samples_around(&rings, plan);
+            let around = samples_around(rings.iter().map(|(ring, _)| ring), plan);
             let stack = match (&parent, plan.seam) {
                 (None, Some(seam)) => {
                     let mut rings: Vec<Ring> = rings.into_iter().map(|(ring, _)| ring).collect();
@@ -450,8 +450,8 @@ fn far_apart(limbs: &[(DVec3, f64)]) -> bool {
 }
 
 /// Samples around a tube through these lines.
-pub(super) fn samples_around(rings: &[(Ring, f64)], plan: &Plan) -> usize {
-    let most = rings.iter().map(|(ring, _)| ring.length()).fold(0.0, f64::max);
+pub(super) fn samples_around<'r>(rings: impl Iterator<Item = &'r Ring>, plan: &Plan) -> usize {
+    let most = rings.map(Ring::length).fold(0.0, f64::max);
     let around = (SAMPLES_A_STITCH * most / plan.gauge.width).clamp(48.0, 256.0) as usize;
     around.next_multiple_of(32)
 }

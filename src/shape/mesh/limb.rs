@@ -198,7 +198,8 @@ impl Mesh {
             if tip.open { (self.opening(&tip.ring, true), None) } else { (None, Some(self.middle(tip))) };
         let rings = levels.stack([level, root.high], &root.way.vertices, spacing, None, last.as_ref());
         let end = pole.or_else(|| rings.last().map(|(ring, _)| ring.center())).unwrap_or_default();
-        Limb { stack: Stack::turned(&rings, [None, pole], samples_around(&rings, plan)), end }
+        let around = samples_around(rings.iter().map(|(ring, _)| ring), plan);
+        Limb { stack: Stack::turned(&rings, [None, pole], around), end }
     }
 
     /// Cuts off the limb that goes to one of the ends; its level lines are those of a mesh on which it is whole.

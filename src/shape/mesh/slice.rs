@@ -1,6 +1,6 @@
 //! Planar cross-sections along a control curve, the way of the paper (section 3.1).
 
-use super::cut::{Cut, Piece, Plan};
+use super::cut::{Cut, Piece, Plan, samples_around};
 use super::levels::Levels;
 use super::soup::NONE;
 use super::{Fault, Mesh};
@@ -73,10 +73,8 @@ impl Mesh {
         if let (Some(seam), Some(ring)) = (plan.seam, rings.first_mut()) {
             *ring = ring.begun_near(seam);
         }
-        let most = rings.iter().map(Ring::length).fold(0.0, f64::max);
-        let around = (1.5 * most / plan.gauge.width).clamp(48.0, 256.0) as usize;
-        let mut stack =
-            Stack::new(&rings, poles, around.next_multiple_of(32)).ok_or(Fault::NoRows { at: last })?;
+        let around = samples_around(rings.iter(), plan);
+        let mut stack = Stack::new(&rings, poles, around).ok_or(Fault::NoRows { at: last })?;
         stack.revolve(plan.gauge.width, &self.points);
         Ok(Cut {
             pieces: vec![Piece {
