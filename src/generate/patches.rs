@@ -17,6 +17,8 @@ pub(super) const LARGE: f64 = 3.0;
 /// Fewest patches along and around, and most of all.
 const LEAST: [usize; 2] = [8, 16];
 const MOST: f64 = 30_000.0;
+/// Farthest that patches larger than wished for may be off in the middle, in stitches.
+const WAY_OFF: f64 = 0.02;
 /// Of a ring of places that are so many times fewer than the patches around, each is looked up by itself.
 const FEW: usize = 2;
 /// Looks at the surface along and around that tell its size.
@@ -53,16 +55,16 @@ pub(super) struct Patches<'s> {
 }
 
 impl<'s> Patches<'s> {
-    /// Patches of a few stitches; `None` where these are too many, or the surface has no sound derivatives.
-    ///
-    /// A patch has about so many `stitches` along and around.
+    /// Patches of about so many `stitches` along and around, or more on a large tube; `None` where these would be far off, or
+    /// the surface has no sound derivatives.
     pub(super) fn new(
         surface: &'s dyn ParametricSurface,
         ends: [End; 2],
         gauge: &Gauge,
         stitches: f64,
     ) -> Option<Self> {
-        let [along, around] = Self::size(surface, [stitches * gauge.height, stitches * gauge.width])?;
+        let ([along, around], coarse) =
+            Self::size(surface, [stitches * gauge.height, stitches * gauge.width]);
         let [first, margin] = ends.map(|end| if end == End::Closed { MARGIN } else { 0 });
         let last = along - margin;
         let origin = surface.point(0.5, 0.0);
@@ -84,11 +86,14 @@ impl<'s> Patches<'s> {
             each.extend(sides.zip(next).map(|((a, c), (b, d))| patch([a, b, c, d])));
         }
         let (numbers, range) = ([along as f64, around as f64], [first as f64, last as f64]);
-        Some(Self { surface, origin, around, numbers, first, range, thinnest, each })
+        let patches = Self { surface, origin, around, numbers, first, range, thinnest, each };
+        let close = !coarse || patches.is_close(WAY_OFF * gauge.width, &mut ring);
+        close.then_some(patches)
     }
 
-    /// Patches along and around, for their size where rows are densest.
-    fn size(surface: &dyn ParametricSurface, [height, width]: [f64; 2]) -> Option<[usize; 2]> {
+    /// Patches along and around, for their size where rows are densest; and whether that would be too many, so that they are
+    /// larger.
+    fn size(surface: &dyn ParametricSurface, [height, width]: [f64; 2]) -> ([usize; 2], bool) {
         let (mut longest, mut widest) = (0.0_f64, 0.0_f64);
         let mut ring = [Jet::default(); LOOKS];
         for i in 0..LOOKS {
@@ -101,11 +106,26 @@ impl<'s> Patches<'s> {
             longest = longest.max(speed);
             widest = widest.max(girth);
         }
-        let (along, around) = (longest / height, widest / width);
-        let fits = along.max(LEAST[0] as f64) * around.max(LEAST[1] as f64) <= MOST;
-        fits.then(|| {
-            let count = |stitches: f64, least| (stitches.ceil() as usize).max(least);
-            [count(along, LEAST[0]) + 2 * MARGIN, count(around, LEAST[1])]
+        let least = LEAST.map(|least| least as f64);
+        let (along, around) = ((longest / height).max(least[0]), (widest / width).max(least[1]));
+        let by = (along * around / MOST).sqrt().max(1.0);
+        let around = (around / by).max(least[1]).min(MOST / least[0]);
+        let along = (along / by).max(least[0]).min(MOST / around);
+        ([along.ceil() as usize + 2 * MARGIN, around.ceil() as usize], by > 1.0)
+    }
+}
+
+impl Patches<'_> {
+    /// The middle of no patch is farther from the surface. The ring is room to work in.
+    fn is_close(&self, distance: f64, ring: &mut [Jet]) -> bool {
+        let [along, around] = self.numbers;
+        let rows = self.first..self.first + self.each.len() / self.around;
+        rows.into_iter().all(|i| {
+            let u = (i as f64 + 0.5) / along;
+            self.surface.ring(u, 0.5 / around, ring);
+            (0_u32..)
+                .zip(&*ring)
+                .all(|(j, jet)| self.point(u, (f64::from(j) + 0.5) / around).distance(jet.point) <= distance)
         })
     }
 }
@@ -253,14 +273,42 @@ mod tests {
     #[test]
     fn patches_differ_from_the_surface_by_next_to_nothing() {
         let surface = TorusArc { major: 30.0, minor: 12.0, angle: 2.0 };
-        let gauge = Gauge::new(3.0, 3.0);
-        let patches = Patches::new(&surface, [End::Open; 2], &gauge, USUAL).unwrap();
-        for i in 0..1000 {
-            let (u, v) = (f64::from(i) / 999.0, 0.618 * f64::from(i) - 100.0);
-            let (near, exact) = (patches.jet(u, v), surface.jet(u, v));
-            assert!(near.point.distance(exact.point) < 5e-4 * gauge.width, "{u} {v}");
-            assert!(near.du.distance(exact.du) < 1e-3 * exact.du.length(), "{u} {v}");
-            assert!(near.dv.distance(exact.dv) < 1e-3 * exact.dv.length(), "{u} {v}");
+        // The second has two million stitches, so that its patches are larger.
+        for stitch in [3.0, 0.05] {
+            let gauge = Gauge::new(stitch, stitch);
+            let patches = Patches::new(&surface, [End::Open; 2], &gauge, USUAL).unwrap();
+            assert!(patches.each.len() as f64 <= 1.1 * MOST);
+            for i in 0..1000 {
+                let (u, v) = (f64::from(i) / 999.0, 0.618 * f64::from(i) - 100.0);
+                let (near, exact) = (patches.jet(u, v), surface.jet(u, v));
+                assert!(near.point.distance(exact.point) < 5e-4 * gauge.width, "{u} {v}");
+                assert!(near.du.distance(exact.du) < 1e-3 * exact.du.length(), "{u} {v}");
+                assert!(near.dv.distance(exact.dv) < 1e-3 * exact.dv.length(), "{u} {v}");
+            }
         }
+    }
+
+    /// A torus with a sharp edge all along.
+    #[derive(Debug)]
+    struct Edged(TorusArc);
+
+    impl ParametricSurface for Edged {
+        fn point(&self, u: f64, v: f64) -> DVec3 {
+            self.jet(u, v).point
+        }
+
+        fn jet(&self, u: f64, v: f64) -> Jet {
+            let (bulge, slope) = (6.0 * math::fraction(v), 6.0);
+            let (inner, outer) =
+                (self.0.jet(u, v), TorusArc { minor: self.0.minor + bulge, ..self.0 }.jet(u, v));
+            let out = (inner.point - self.0.jet(u, v + 0.5).point) / (2.0 * self.0.minor);
+            Jet { dv: outer.dv + out * slope, ..outer }
+        }
+    }
+
+    #[test]
+    fn large_patches_that_would_be_far_off_are_none() {
+        let edged = Edged(TorusArc { major: 30.0, minor: 12.0, angle: 2.0 });
+        assert!(Patches::new(&edged, [End::Open; 2], &Gauge::new(0.05, 0.05), USUAL).is_none());
     }
 }

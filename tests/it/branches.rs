@@ -7,12 +7,13 @@ use picot::frontend::crochet::{Conventions, Document};
 use picot::frontend::{Input, reader};
 use picot::ir::joins::{Pair, pairs};
 use picot::ir::verify::verify;
-use picot::ir::{Block, Kind, PartId, Program, Segment, Start, Step};
+use picot::ir::{Block, Gauge, Kind, PartId, Program, Segment, Start, Step};
 use picot::shape::{Joint, Shape};
 use picot::{Options, backends};
 use proptest::prelude::*;
 use std::fmt::Write;
 use std::io;
+use std::path::Path;
 
 fn nothing(_: &str) -> io::Result<Vec<u8>> {
     Err(io::ErrorKind::NotFound.into())
@@ -32,6 +33,20 @@ fn make(toml: &str) -> Result<(Shape, Program), Vec<String>> {
     }
     let found = sink.diagnostics().iter().map(|it| format!("{} {}", it.code.as_str(), it.message));
     Err(found.collect())
+}
+
+#[test]
+fn another_gauge_cuts_branches_as_its_own_would() {
+    let toml = text(Path::new("shapes/bear.toml"));
+    let own = "stitch = { width = 0.2, height = 0.2 }";
+    let line = toml.lines().find(|line| line.starts_with("stitch")).expect("a gauge");
+    let (_, finer) = make(&toml.replace(line, own)).expect("sound");
+    let options = Options { gauge: Some(Gauge::new(2.0, 2.0)), ..Options::default() };
+    let mut sources = Sources::new(&nothing);
+    let source = sources.add("shape.toml", toml.into_bytes()).expect("small");
+    let reader = reader("shape").expect("listed");
+    let chosen = picot::compile(&source, reader, &options, &mut sources, &mut Sink::new()).expect("sound");
+    assert_eq!(written(&chosen), written(&finer));
 }
 
 /// Every shipped shape with branches.

@@ -47,7 +47,7 @@ fn read(source: &Source, sources: &mut Sources<'_>, sink: &mut Sink<'_>) -> Opti
     read_at(source, None, sources, sink)
 }
 
-/// Reads a shape file; `gauge` takes the place of its own, which matters where a mesh is cut.
+/// Reads a shape file; `gauge` takes the place of its own: where branches and meshes are cut depends on it.
 pub(crate) fn read_at(
     source: &Source,
     gauge: Option<Gauge>,
@@ -55,7 +55,7 @@ pub(crate) fn read_at(
     sink: &mut Sink<'_>,
 ) -> Option<Input> {
     let mut walk = Walk::new(source);
-    let document = parse(source, &mut walk);
+    let document = parse(source, gauge, &mut walk);
     let errors = sink.errors();
     walk.finish().into_iter().for_each(|diagnostic| sink.push(diagnostic));
     let shape = match document.filter(|_| sink.errors() == errors)? {
@@ -65,7 +65,7 @@ pub(crate) fn read_at(
     Some(Input::Shape(Box::new(shape)))
 }
 
-fn parse(source: &Source, walk: &mut Walk<'_>) -> Option<Document> {
+fn parse(source: &Source, gauge: Option<Gauge>, walk: &mut Walk<'_>) -> Option<Document> {
     let text = match source.text() {
         Ok(text) => text,
         Err(offset) => {
@@ -78,7 +78,7 @@ fn parse(source: &Source, walk: &mut Walk<'_>) -> Option<Document> {
     };
     let (document, errors) = DeTable::parse_recoverable(text);
     if errors.is_empty() {
-        return document_of(walk, &document, source.name());
+        return document_of(walk, &document, gauge, source.name());
     }
     // What follows on a line that is broken already says nothing new.
     let line = |at: usize| text.bytes().take(at).filter(|byte| *byte == b'\n').count();
@@ -137,7 +137,12 @@ fn first_of(text: &str, key: &str, again: usize) -> Option<Range<usize>> {
     None
 }
 
-fn document_of(walk: &mut Walk<'_>, document: &Spanned<DeTable<'_>>, file: &str) -> Option<Document> {
+fn document_of(
+    walk: &mut Walk<'_>,
+    document: &Spanned<DeTable<'_>>,
+    chosen: Option<Gauge>,
+    file: &str,
+) -> Option<Document> {
     let top = document.get_ref();
     let home = walk.span(0..0);
     walk.known(top, "a shape file", &["name", "unit", "gauge", "maker", "trunk", "branch", "mesh"]);
@@ -148,7 +153,7 @@ fn document_of(walk: &mut Walk<'_>, document: &Spanned<DeTable<'_>>, file: &str)
         walk.report(note.at(home, "").help("add `unit = \"mm\"`, \"cm\" or \"in\" at the top"));
     }
     let name = name(walk, top, file);
-    let gauge = gauge::read(walk, top, home);
+    let gauge = gauge::read(walk, top, home).map(|(own, span)| (chosen.unwrap_or(own), span));
     let wishes = maker::read(walk, top);
     if let Some((place, value)) = walk.get(top, "mesh") {
         let request = mesh::read(walk, top, value, place);
