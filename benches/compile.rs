@@ -50,7 +50,7 @@ fn paper(criterion: &mut Criterion) {
 fn scale(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("scale");
     group.sample_size(10);
-    for size in [2.4, 0.78, 0.247, 0.0782] {
+    for size in [2.4, 2.0, 1.5, 1.0, 0.78, 0.5, 0.247, 0.0782, 0.0248] {
         let (_, text) = SHAPES[3];
         group.throughput(Throughput::Elements(compile(text, size)));
         group.bench_with_input(BenchmarkId::new("d", size), &size, |bencher, size| {

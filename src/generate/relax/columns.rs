@@ -1,7 +1,7 @@
 //! The wales in working order, four at a time: each carries its own pull, that of the course between its top and the top
 //! before it, and that of the tile between it and the wale before it.
 
-use super::lanes::{Four, Matrices, Places, root};
+use super::lanes::{GROUP, Matrices, Places, Vectors, larger, outer, smaller, square};
 use super::{SHARES, Scales, TINY, shares};
 use crate::generate::sheet::{Edge, EdgeKind, Quad, TileKind};
 use crate::ir::NodeId;
@@ -14,11 +14,25 @@ const TAIL_MOST: f32 = 0.198;
 /// So many wales are not kept beside their blocks.
 const MANY: usize = 1 << 16;
 
+/// So many wales are pulled at a time.
+const CHUNK: usize = 64;
+
 /// The wales of a sheet from a mark on, with what hangs between neighbors.
 #[derive(Debug, Default)]
 pub(super) struct Columns {
     wales: Vec<Wale>,
-    blocks: Vec<Block>,
+    /// Bases and tops, counted from the lowest node.
+    groups: Vec<[Places; 2]>,
+    /// Weights of each, and of the tiles in shares: a byte each, for they outweigh the nodes of a large part.
+    wale: Vec<u8>,
+    course: Vec<u8>,
+    tile: Vec<u8>,
+    /// What the tiles pull with, good for a few sweeps: see [`Columns::stiffen`].
+    slant: Vec<f32>,
+    /// Room for a chunk.
+    ends: WaleEnds,
+    pulls: Gains<3>,
+    matrices: Gains<6>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -31,30 +45,6 @@ struct Wale {
     course: u8,
     /// Weight of the tile, in shares.
     tile: u8,
-}
-
-/// Four wales; places count from the lowest node.
-#[derive(Clone, Copy, Debug, Default)]
-struct Block {
-    base: Places,
-    top: Places,
-    wale: Weights,
-    course: Weights,
-    /// In shares.
-    tile: Weights,
-    /// What the tile pulls with, good for a few sweeps: see [`Columns::stiffen`].
-    slant: Vec4,
-}
-
-/// Weights of four: a byte each, for the blocks of a large part outweigh its nodes.
-#[derive(Clone, Copy, Debug, Default)]
-struct Weights([u8; 4]);
-
-impl Weights {
-    #[inline]
-    fn get(self) -> Vec4 {
-        Vec4::from_array(self.0.map(f32::from))
-    }
 }
 
 /// What is not between neighbors: steps, courses of a first row, turns.
@@ -120,67 +110,66 @@ impl Columns {
         while !self.wales.len().is_multiple_of(4) {
             self.wales.push(Wale::default());
         }
-        self.blocks.clear();
-        self.blocks.extend(self.wales.as_chunks().0.iter().map(|wales: &[Wale; 4]| {
-            let weights = |weight: fn(&Wale) -> u8| Weights(wales.each_ref().map(weight));
-            Block {
-                base: Places::new(wales.map(|wale| wale.base.saturating_sub(low))),
-                top: Places::new(wales.map(|wale| wale.top.saturating_sub(low))),
-                wale: weights(|wale| wale.weight),
-                course: weights(|wale| wale.course),
-                tile: weights(|wale| wale.tile),
-                slant: Vec4::ZERO,
-            }
+        let groups = self.wales.as_chunks::<GROUP>().0.iter();
+        self.groups.clear();
+        self.groups.extend(groups.map(|wales| {
+            let places = |node: fn(&Wale) -> NodeId| {
+                Places::new(wales.each_ref().map(|wale| node(wale).saturating_sub(low)))
+            };
+            [places(|wale| wale.base), places(|wale| wale.top)]
         }));
+        let weights = |to: &mut Vec<u8>, weight: fn(&Wale) -> u8| {
+            to.clear();
+            to.extend(self.wales.iter().map(weight));
+        };
+        weights(&mut self.wale, |wale| wale.weight);
+        weights(&mut self.course, |wale| wale.course);
+        weights(&mut self.tile, |wale| wale.tile);
+        self.slant.clear();
+        self.slant.resize(self.wales.len(), 0.0);
         if self.wales.len() > MANY {
             self.wales = Vec::new();
         }
         low as usize
     }
 
-    /// The nodes of each tile of weight, as places: base left, base right, top left, top right.
-    pub(super) fn tiles(&self) -> impl Iterator<Item = [usize; 4]> {
-        let wales = self.blocks.iter().flat_map(|block| {
-            let places = block.base.each.into_iter().zip(block.top.each);
-            places.zip(block.tile.0).map(|((base, top), tile)| (base as usize, top as usize, tile))
-        });
-        let before = std::iter::once((0, 0, 0)).chain(wales.clone());
-        before
-            .zip(wales)
-            .filter(|(_, (.., tile))| *tile > 0)
-            .map(|((b0, t0, _), (b1, t1, _))| [b0, b1, t0, t1])
+    /// Calls a function with the nodes of each tile of weight, as places: base left, base right, top left, top right.
+    #[inline(always)]
+    pub(super) fn for_tiles(&self, mut act: impl FnMut([usize; 4])) {
+        let (mut base, mut top) = (0, 0);
+        for ([bases, tops], tiles) in self.groups.iter().zip(self.tile.as_chunks::<GROUP>().0) {
+            for ((right_base, right_top), tile) in bases.each.into_iter().zip(tops.each).zip(tiles) {
+                if *tile > 0 {
+                    act([base, right_base, top, right_top].map(|i| i as usize));
+                }
+                (base, top) = (right_base, right_top);
+            }
+        }
     }
 
     /// Sums the pulls of all wales, courses and tiles at their nodes. With `TAIL`, long and short edges pull more than in
     /// proportion.
-    pub(super) fn pull<const TAIL: bool>(&self, point: &[Vec4], gradient: &mut [Vec4], scales: &Scales) {
-        let (height, width) = (Vec4::splat(scales.height.recip()), Vec4::splat(scales.width.recip()));
-        let (mut bases, mut tops) = (Four::default(), Four::default());
-        let mut last = Pending::<Four>::default();
-        for block in &self.blocks {
-            let (b1, t1) = (Four::gather(point, &block.base), Four::gather(point, &block.top));
-            let (b0, t0) = (b1.behind(bases), t1.behind(tops));
-            (bases, tops) = (b1, t1);
-            let up = t1 - b1;
-            let up = up.times(block.wale.get() * tension::<TAIL>(up, height));
-            let along = t1 - t0;
-            let along = along.times(block.course.get() * tension::<TAIL>(along, width));
-            let (rising, falling) = (t1 - b0, t0 - b1);
-            let pull = block.slant * (rising.dot(rising) - falling.dot(falling));
-            let (rising, falling) = (rising.times(pull), falling.times(pull));
-            // In the end the signs of what the wales before get are turned.
-            let left = [rising, along + falling];
-            last.right[0] = last.right[0] - last.left[0].ahead(left[0]);
-            last.right[1] = last.right[1] - last.left[1].ahead(left[1]);
-            last.right[0].scatter(gradient, &last.at[0]);
-            last.right[1].scatter(gradient, &last.at[1]);
-            last = Pending { at: [block.base, block.top], right: [falling - up, up + along + rising], left };
+    #[inline(always)]
+    pub(super) fn pull<const TAIL: bool>(
+        &mut self,
+        point: &Vectors<3>,
+        gradient: &mut Vectors<3>,
+        scales: &Scales,
+    ) {
+        let rest = [scales.height.recip(), scales.width.recip()];
+        let (point, mut gradient) = (point.axes(0), gradient.axes_mut(0));
+        let Self { ends, pulls, .. } = self;
+        let mut last = [Places::default(); 2];
+        ends.begin();
+        pulls.begin();
+        let wales = self.wale.chunks(CHUNK).zip(self.course.chunks(CHUNK)).zip(self.slant.chunks(CHUNK));
+        for (groups, ((wale, course), slant)) in self.groups.chunks(CHUNK / GROUP).zip(wales) {
+            ends.gather(groups, point);
+            pulls.of::<TAIL>(ends, [wale, course], slant, rest);
+            pulls.give(groups, &mut last, &mut gradient);
+            ends.go_on(groups.len());
         }
-        // The last lane of all has no wale after it.
-        last.right[0] = last.right[0] - last.left[0].ahead(Four::default());
-        last.right[1] = last.right[1] - last.left[1].ahead(Four::default());
-        last.right[0].scatter(gradient, &last.at[0]);
-        last.right[1].scatter(gradient, &last.at[1]);
+        pulls.end(&last, &mut gradient);
     }
 
     /// Adds up the Gauss-Newton matrices of the nodes, and takes up the slants of the tiles: the factor from the difference of
@@ -188,63 +177,225 @@ impl Columns {
     ///
     /// Middle lines of a tile are half the sum and half the difference of its diagonals, so their product is a quarter of the
     /// difference of the squared diagonals: no root, no quotient.
+    #[inline(always)]
     pub(super) fn stiffen<const TAIL: bool>(
         &mut self,
-        point: &[Vec4],
-        stiffness: &mut [[Vec4; 2]],
+        point: &Vectors<3>,
+        stiffness: &mut Matrices,
         scales: &Scales,
     ) {
-        let half = Vec4::splat(0.5);
-        let share = Vec4::splat(scales.squareness / f32::from(SHARES));
-        let (height, width) = (scales.height, scales.width);
-        // Two nodes share the residual of an edge, four that of a tile: that many times the outer product majorizes, so that
-        // no line search is needed.
-        let (by_height, by_width) = (Vec4::splat(height.recip()), Vec4::splat(width.recip()));
-        let (least_up, least_across) = (Vec4::splat(0.3 * height), Vec4::splat(0.2 * width));
-        let (mut bases, mut tops) = (Four::default(), Four::default());
-        let mut last = Pending::<Matrices>::default();
-        let mut give = |last: &Pending<Matrices>, next: [Matrices; 2]| {
-            let sides = last.right.into_iter().zip(last.left).zip(next).zip(last.at);
-            for (((right, left), next), at) in sides {
-                let own = right + left.ahead(next);
-                let each = own.diagonal.each().into_iter().zip(own.off.each());
-                for (place, (diagonal, off)) in at.each.into_iter().zip(each) {
-                    let place = &mut stiffness[place as usize];
-                    place[0] += diagonal;
-                    place[1] += off;
-                }
-            }
-        };
-        for block in &mut self.blocks {
-            let (b1, t1) = (Four::gather(point, &block.base), Four::gather(point, &block.top));
-            let (b0, t0) = (b1.behind(bases), t1.behind(tops));
-            (bases, tops) = (b1, t1);
-            let up = t1 - b1;
-            let up = Matrices::outer(up, block.wale.get() * stiffness_of::<TAIL>(up, by_height));
-            let along = t1 - t0;
-            let along = Matrices::outer(along, block.course.get() * stiffness_of::<TAIL>(along, by_width));
-            let (rising, falling) = (t1 - b0, t0 - b1);
-            let (middle, across) = ((rising + falling).times(half), (rising - falling).times(half));
-            let length = |d: Four, least: Vec4| root(d.dot(d)).max(least);
-            let slant = half / (length(middle, least_up) * length(across, least_across));
-            let square = block.tile.get() * share * slant * slant;
-            block.slant = half * square;
-            let weight = square * Vec4::splat(4.0);
-            let (rising, falling) = (Matrices::outer(rising, weight), Matrices::outer(falling, weight));
-            let left = [rising, along + falling];
-            give(&last, left);
-            last = Pending { at: [block.base, block.top], right: [falling + up, up + along + rising], left };
+        let (point, mut stiffness) = (point.axes(0), stiffness.axes_mut(0));
+        let Self { ends, matrices, .. } = self;
+        let mut last = [Places::default(); 2];
+        ends.begin();
+        matrices.begin();
+        let wales = self.wale.chunks(CHUNK).zip(self.course.chunks(CHUNK)).zip(self.tile.chunks(CHUNK));
+        let wales = wales.zip(self.slant.chunks_mut(CHUNK));
+        for (groups, (((wale, course), tile), slant)) in self.groups.chunks(CHUNK / GROUP).zip(wales) {
+            ends.gather(groups, point);
+            matrices.of::<TAIL>(ends, [wale, course, tile], slant, scales);
+            matrices.give(groups, &mut last, &mut stiffness);
+            ends.go_on(groups.len());
         }
-        give(&last, Default::default());
+        matrices.end(&last, &mut stiffness);
     }
 }
 
-/// Four wales, what their nodes get, bases and tops, and what those of the wales before each get from them.
-#[derive(Default)]
-struct Pending<T> {
-    at: [Places; 2],
-    right: [T; 2],
-    left: [T; 2],
+/// A number of each wale of a chunk and of the group before it, whose last wale has to do with the first of the chunk.
+type Line = [f32; GROUP + CHUNK];
+const ZEROS: Line = [0.0; GROUP + CHUNK];
+
+/// Where wales begin and end.
+#[derive(Debug)]
+struct WaleEnds {
+    base: [Line; 3],
+    top: [Line; 3],
+}
+
+impl Default for WaleEnds {
+    fn default() -> Self {
+        Self { base: [ZEROS; 3], top: [ZEROS; 3] }
+    }
+}
+
+impl WaleEnds {
+    /// Before the first chunk.
+    #[inline(always)]
+    fn begin(&mut self) {
+        for line in self.base.iter_mut().chain(&mut self.top) {
+            line[..GROUP].fill(0.0);
+        }
+    }
+
+    /// After a chunk of so many groups.
+    #[inline(always)]
+    fn go_on(&mut self, groups: usize) {
+        for line in self.base.iter_mut().chain(&mut self.top) {
+            go_on(line, groups);
+        }
+    }
+
+    #[inline(always)]
+    fn gather(&mut self, groups: &[[Places; 2]], point: [&[f32]; 3]) {
+        for (k, [base, top]) in groups.iter().enumerate() {
+            let at = GROUP * (k + 1);
+            for (axis, point) in point.into_iter().enumerate() {
+                base.gather(point).write_to_slice(&mut self.base[axis][at..]);
+                top.gather(point).write_to_slice(&mut self.top[axis][at..]);
+            }
+        }
+    }
+
+    /// The sides of the tile between a wale and the one before: up its own wale, along the tops, and both diagonals, from the base
+    /// before and from its own.
+    #[inline(always)]
+    fn sides(&self, i: usize) -> [[f32; 3]; 4] {
+        let at = |line: &[Line; 3], i: usize| [line[0][i], line[1][i], line[2][i]];
+        let way = |to: [f32; 3], from: [f32; 3]| [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
+        let (b0, t0) = (at(&self.base, i - 1), at(&self.top, i - 1));
+        let (b1, t1) = (at(&self.base, i), at(&self.top, i));
+        [way(t1, b1), way(t1, t0), way(t1, b0), way(t0, b1)]
+    }
+}
+
+/// The last group of a chunk is the one before the next.
+#[inline(always)]
+fn go_on(line: &mut Line, groups: usize) {
+    line.copy_within(GROUP * groups..GROUP * groups + GROUP, 0);
+}
+
+/// What bases and tops of wales get: from their own wales, and, to be taken away, the wale before from each.
+#[derive(Debug)]
+struct Gains<const N: usize> {
+    own: [[Line; N]; 2],
+    before: [[Line; N]; 2],
+}
+
+impl<const N: usize> Default for Gains<N> {
+    fn default() -> Self {
+        Self { own: [[ZEROS; N]; 2], before: [[ZEROS; N]; 2] }
+    }
+}
+
+impl<const N: usize> Gains<N> {
+    /// There is nothing before the first chunk.
+    #[inline(always)]
+    fn begin(&mut self) {
+        for line in self.own.as_flattened_mut() {
+            line[..GROUP].fill(0.0);
+        }
+        for line in self.before.as_flattened_mut() {
+            line[..GROUP].fill(0.0);
+        }
+    }
+
+    /// Gives the nodes of all but the last group what they get, and those of the `last` one before.
+    #[inline(always)]
+    fn give(&mut self, groups: &[[Places; 2]], last: &mut [Places; 2], to: &mut [&mut [f32]; N]) {
+        let count = (GROUP * groups.len()).min(CHUNK);
+        for (own, before) in self.own.as_flattened_mut().iter_mut().zip(self.before.as_flattened()) {
+            for i in 0..count {
+                own[i] -= before[i + 1];
+            }
+        }
+        for (k, group) in groups.iter().enumerate() {
+            self.scatter(last, GROUP * k, to);
+            *last = *group;
+        }
+        for line in self.own.as_flattened_mut() {
+            go_on(line, groups.len());
+        }
+        for line in self.before.as_flattened_mut() {
+            go_on(line, groups.len());
+        }
+    }
+
+    /// The last wale of all has none after it.
+    #[inline(always)]
+    fn end(&mut self, last: &[Places; 2], to: &mut [&mut [f32]; N]) {
+        for (own, before) in self.own.as_flattened_mut().iter_mut().zip(self.before.as_flattened()) {
+            for i in 0..GROUP - 1 {
+                own[i] -= before[i + 1];
+            }
+        }
+        self.scatter(last, 0, to);
+    }
+
+    #[inline(always)]
+    fn scatter(&self, places: &[Places; 2], at: usize, to: &mut [&mut [f32]; N]) {
+        for (places, own) in places.iter().zip(&self.own) {
+            for (own, to) in own.iter().zip(&mut *to) {
+                places.scatter(Vec4::from_slice(&own[at..]), to);
+            }
+        }
+    }
+}
+
+impl Gains<3> {
+    /// The pulls of wales, courses and tiles, with signs turned; given one over the rest lengths of wales and courses.
+    #[inline(always)]
+    fn of<const TAIL: bool>(
+        &mut self,
+        ends: &WaleEnds,
+        [wale, course]: [&[u8]; 2],
+        slant: &[f32],
+        [height, width]: [f32; 2],
+    ) {
+        let count = wale.len().min(course.len()).min(slant.len()).min(CHUNK);
+        for k in 0..count {
+            let i = k + GROUP;
+            let [up, along, rising, falling] = ends.sides(i);
+            let by_up = f32::from(wale[k]) * tension::<TAIL>(square(up), height);
+            let by_along = f32::from(course[k]) * tension::<TAIL>(square(along), width);
+            let pull = slant[k] * (square(rising) - square(falling));
+            for axis in 0..3 {
+                let (up, along) = (up[axis] * by_up, along[axis] * by_along);
+                let (rising, falling) = (rising[axis] * pull, falling[axis] * pull);
+                self.before[0][axis][i] = rising;
+                self.before[1][axis][i] = along + falling;
+                self.own[0][axis][i] = falling - up;
+                self.own[1][axis][i] = up + along + rising;
+            }
+        }
+    }
+}
+
+impl Gains<6> {
+    /// The matrices of wales, courses and tiles, and the slants of the tiles.
+    #[inline(always)]
+    fn of<const TAIL: bool>(
+        &mut self,
+        ends: &WaleEnds,
+        [wale, course, tile]: [&[u8]; 3],
+        slants: &mut [f32],
+        scales: &Scales,
+    ) {
+        let share = scales.squareness / f32::from(SHARES);
+        // Two nodes share the residual of an edge, four that of a tile: that many times the outer product majorizes, so that
+        // no line search is needed.
+        let (by_height, by_width) = (scales.height.recip(), scales.width.recip());
+        let (least_up, least_across) = (0.3 * scales.height, 0.2 * scales.width);
+        let count = wale.len().min(course.len()).min(tile.len()).min(slants.len()).min(CHUNK);
+        for k in 0..count {
+            let i = k + GROUP;
+            let [up, along, rising, falling] = ends.sides(i);
+            let length = |a: [f32; 3], least: f32| larger(square(a).sqrt(), least);
+            let middle = std::array::from_fn(|axis| (rising[axis] + falling[axis]) * 0.5);
+            let across = std::array::from_fn(|axis| (rising[axis] - falling[axis]) * 0.5);
+            let slant = 0.5 / (length(middle, least_up) * length(across, least_across));
+            let weight = f32::from(tile[k]) * share * slant * slant;
+            slants[k] = 0.5 * weight;
+            let up = outer(up, f32::from(wale[k]) * stiffness_of::<TAIL>(square(up), by_height));
+            let along = outer(along, f32::from(course[k]) * stiffness_of::<TAIL>(square(along), by_width));
+            let (rising, falling) = (outer(rising, weight * 4.0), outer(falling, weight * 4.0));
+            for axis in 0..6 {
+                self.before[0][axis][i] = -rising[axis];
+                self.before[1][axis][i] = -(along[axis] + falling[axis]);
+                self.own[0][axis][i] = falling[axis] + up[axis];
+                self.own[1][axis][i] = up[axis] + along[axis] + rising[axis];
+            }
+        }
+    }
 }
 
 fn is_turn(quad: &Quad) -> bool {
@@ -256,27 +407,27 @@ fn spans(quad: &Quad, wale: &Edge) -> bool {
     quad.corners[1] == wale.a && quad.corners[3] == wale.b
 }
 
-/// What the vectors of edges pull with, by one over their rest length: the derivative of half the squared strain by the
-/// vector is so many times that.
-#[inline]
-fn tension<const TAIL: bool>(edge: Four, rest: Vec4) -> Vec4 {
-    let square = edge.dot(edge).max(Vec4::splat(TINY));
-    let by_length = Vec4::ONE / root(square);
+/// What an edge of this squared length pulls with, by one over its rest length: the derivative of half the squared strain by
+/// its vector is so many times that.
+#[inline(always)]
+fn tension<const TAIL: bool>(square: f32, rest: f32) -> f32 {
+    let square = larger(square, TINY);
+    let by_length = 1.0 / square.sqrt();
     let tension = rest * (rest - by_length);
-    if TAIL { tension * (Vec4::ONE + tail(square * by_length * rest)) } else { tension }
+    if TAIL { tension * (1.0 + tail(square * by_length * rest)) } else { tension }
 }
 
 /// Bounds the second derivative of the same: so many times the outer product, for each of two nodes.
-#[inline]
-fn stiffness_of<const TAIL: bool>(edge: Four, rest: Vec4) -> Vec4 {
-    let square = edge.dot(edge).max(Vec4::splat(TINY));
-    let stiffness = Vec4::splat(2.0) * rest * rest / square;
-    if TAIL { stiffness * (Vec4::ONE + Vec4::splat(3.0) * tail(root(square) * rest)) } else { stiffness }
+#[inline(always)]
+fn stiffness_of<const TAIL: bool>(square: f32, rest: f32) -> f32 {
+    let square = larger(square, TINY);
+    let stiffness = 2.0 * rest * rest / square;
+    if TAIL { stiffness * (1.0 + 3.0 * tail(square.sqrt() * rest)) } else { stiffness }
 }
 
-/// How much more than in proportion edges of these lengths, in rest lengths, pull.
-#[inline]
-fn tail(length: Vec4) -> Vec4 {
-    let strain = length - Vec4::ONE;
-    (Vec4::splat(TAIL_WEIGHT) * strain * strain).min(Vec4::splat(TAIL_MOST))
+/// How much more than in proportion an edge of this length, in rest lengths, pulls.
+#[inline(always)]
+fn tail(length: f32) -> f32 {
+    let strain = length - 1.0;
+    smaller(TAIL_WEIGHT * strain * strain, TAIL_MOST)
 }

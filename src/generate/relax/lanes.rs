@@ -1,180 +1,158 @@
-//! Four vectors at a time: one lane each of a coordinate, gathered from and scattered to arrays of points.
+//! Vectors of space with their coordinates apart, so that a loop over many of them is one of wide instructions.
 
-use glam::{Mat4, Vec4};
-use std::ops::{Add, AddAssign, Mul, Sub};
+use glam::{Vec3A, Vec4};
 
-/// The square root of each.
-#[inline]
-pub(super) fn root(square: Vec4) -> Vec4 {
-    // The vector's own may call a library.
-    Vec4::from_array(square.to_array().map(f32::sqrt))
+/// The larger of two, and the second where one is no number: one instruction.
+#[inline(always)]
+pub(super) fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
-/// Four places in an array.
+/// The smaller of two, likewise.
+#[inline(always)]
+pub(super) fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+pub(super) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The length of a vector, squared.
+#[inline(always)]
+pub(super) fn square(a: [f32; 3]) -> f32 {
+    dot(a, a)
+}
+
+/// Vectors of `N` numbers: all the first ones, all the second ones, and so on.
+#[derive(Debug)]
+pub(super) struct Vectors<const N: usize>(pub(super) [Vec<f32>; N]);
+
+impl<const N: usize> Default for Vectors<N> {
+    fn default() -> Self {
+        Self(std::array::from_fn(|_| Vec::new()))
+    }
+}
+
+impl<const N: usize> Vectors<N> {
+    pub(super) fn len(&self) -> usize {
+        self.0[0].len()
+    }
+
+    /// So many zeros.
+    pub(super) fn reset(&mut self, count: usize) {
+        for axis in &mut self.0 {
+            axis.clear();
+            axis.resize(count, 0.0);
+        }
+    }
+
+    /// The numbers from a place on.
+    #[inline(always)]
+    pub(super) fn axes(&self, first: usize) -> [&[f32]; N] {
+        self.0.each_ref().map(|axis| &axis[first..])
+    }
+
+    #[inline(always)]
+    pub(super) fn axes_mut(&mut self, first: usize) -> [&mut [f32]; N] {
+        self.0.each_mut().map(|axis| &mut axis[first..])
+    }
+}
+
+impl Vectors<3> {
+    /// These, and zeros after them up to `count`.
+    pub(super) fn refill(&mut self, vectors: impl Iterator<Item = Vec3A>, count: usize) {
+        self.reset(count);
+        let [x, y, z] = &mut self.0;
+        for (((x, y), z), vector) in x.iter_mut().zip(y).zip(z).zip(vectors) {
+            [*x, *y, *z] = vector.to_array();
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn get(&self, i: usize) -> Vec3A {
+        let [x, y, z] = &self.0;
+        Vec3A::new(x[i], y[i], z[i])
+    }
+
+    #[inline(always)]
+    pub(super) fn add(&mut self, i: usize, vector: Vec3A) {
+        for (axis, own) in self.0.iter_mut().zip(vector.to_array()) {
+            axis[i] += own;
+        }
+    }
+}
+
+/// Symmetric matrices: their diagonals, and yz, zx, xy.
+pub(super) type Matrices = Vectors<6>;
+
+impl Matrices {
+    /// Adds `weight` times the outer product of a vector with itself.
+    pub(super) fn add_outer(&mut self, i: usize, a: Vec3A, weight: f32) {
+        for (axis, own) in self.0.iter_mut().zip(outer(a.to_array(), weight)) {
+            axis[i] += own;
+        }
+    }
+}
+
+/// `weight` times the outer product of a vector with itself.
+#[inline(always)]
+pub(super) fn outer(a: [f32; 3], weight: f32) -> [f32; 6] {
+    let [x, y, z] = a.map(|a| a * weight);
+    [a[0] * x, a[1] * y, a[2] * z, a[1] * z, a[2] * x, a[0] * y]
+}
+
+/// a M b.
+#[inline(always)]
+pub(super) fn quadratic([xx, yy, zz, yz, zx, xy]: [f32; 6], a: [f32; 3], b: [f32; 3]) -> f32 {
+    let straight = [a[0] * b[0], a[1] * b[1], a[2] * b[2]];
+    let crossed = [a[1] * b[2] + a[2] * b[1], a[2] * b[0] + a[0] * b[2], a[0] * b[1] + a[1] * b[0]];
+    dot(straight, [xx, yy, zz]) + dot(crossed, [yz, zx, xy])
+}
+
+/// Places in an array that are looked up together.
+pub(super) const GROUP: usize = 4;
+
+/// Where a group of vectors lies.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Places {
-    pub(super) each: [u32; 4],
+    pub(super) each: [u32; GROUP],
     /// They follow each other.
     run: bool,
 }
 
 impl Places {
     #[inline]
-    pub(super) fn new(each: [u32; 4]) -> Self {
-        let [a, b, c, d] = each;
-        Self { each, run: b == a + 1 && c == b + 1 && d == c + 1 }
+    pub(super) fn new(each: [u32; GROUP]) -> Self {
+        Self { each, run: each.is_sorted_by(|a, b| *b == a + 1) }
     }
 
-    #[inline]
+    #[inline(always)]
     fn first(&self) -> usize {
         self.each[0] as usize
     }
-}
 
-/// Four vectors of space: the x of all, the y of all, the z of all.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Four {
-    pub(super) x: Vec4,
-    pub(super) y: Vec4,
-    pub(super) z: Vec4,
-}
-
-impl Four {
-    #[inline]
-    pub(super) fn new(points: [Vec4; 4]) -> Self {
-        let [a, b, c, d] = points;
-        let turned = Mat4::from_cols(a, b, c, d).transpose();
-        Self { x: turned.x_axis, y: turned.y_axis, z: turned.z_axis }
-    }
-
-    #[inline]
-    pub(super) fn gather(from: &[Vec4], at: &Places) -> Self {
-        if at.run
-            && let Some(Ok(points)) = from.get(at.first()..at.first() + 4).map(<[Vec4; 4]>::try_from)
+    #[inline(always)]
+    pub(super) fn gather(&self, from: &[f32]) -> Vec4 {
+        if self.run
+            && let Some(group) = from.get(self.first()..self.first() + GROUP)
         {
-            return Self::new(points);
+            return Vec4::from_slice(group);
         }
-        Self::new(at.each.map(|i| from[i as usize]))
+        Vec4::from_array(self.each.map(|i| from[i as usize]))
     }
 
-    /// The vectors one by one; their fourth number is 0.
-    #[inline]
-    pub(super) fn each(self) -> [Vec4; 4] {
-        let turned = Mat4::from_cols(self.x, self.y, self.z, Vec4::ZERO).transpose();
-        [turned.x_axis, turned.y_axis, turned.z_axis, turned.w_axis]
-    }
-
-    #[inline]
-    pub(super) fn scatter(self, to: &mut [Vec4], at: &Places) {
-        let each = self.each();
-        if at.run
-            && let Some(to) = to.get_mut(at.first()..at.first() + 4)
+    #[inline(always)]
+    pub(super) fn scatter(&self, own: Vec4, to: &mut [f32]) {
+        if self.run
+            && let Some(to) = to.get_mut(self.first()..self.first() + GROUP)
         {
-            for (to, own) in to.iter_mut().zip(each) {
-                *to += own;
-            }
+            (Vec4::from_slice(to) + own).write_to_slice(to);
             return;
         }
-        for (i, own) in at.each.into_iter().zip(each) {
+        for (i, own) in self.each.into_iter().zip(own.to_array()) {
             to[i as usize] += own;
         }
-    }
-
-    #[inline]
-    pub(super) fn dot(self, other: Self) -> Vec4 {
-        self.x * other.x + self.y * other.y + self.z * other.z
-    }
-
-    #[inline]
-    fn map(self, other: Self, f: impl Fn(Vec4, Vec4) -> Vec4) -> Self {
-        Self { x: f(self.x, other.x), y: f(self.y, other.y), z: f(self.z, other.z) }
-    }
-
-    /// Each lane has the vector of the lane before it; the first one the last of `before`.
-    #[inline]
-    pub(super) fn behind(self, before: Self) -> Self {
-        self.map(before, |own, before| Vec4::new(before.w, own.x, own.y, own.z))
-    }
-
-    /// Each lane has the vector of the lane after it; the last one the first of `next`.
-    #[inline]
-    pub(super) fn ahead(self, next: Self) -> Self {
-        self.map(next, |own, next| Vec4::new(own.y, own.z, own.w, next.x))
-    }
-
-    /// Each vector times a number of its own.
-    #[inline]
-    pub(super) fn times(self, factor: Vec4) -> Self {
-        Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
-    }
-}
-
-impl Add for Four {
-    type Output = Self;
-    #[inline]
-    fn add(self, other: Self) -> Self {
-        self.map(other, |a, b| a + b)
-    }
-}
-
-impl AddAssign for Four {
-    #[inline]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl Sub for Four {
-    type Output = Self;
-    #[inline]
-    fn sub(self, other: Self) -> Self {
-        self.map(other, |a, b| a - b)
-    }
-}
-
-impl Mul for Four {
-    type Output = Self;
-    /// Number by number.
-    #[inline]
-    fn mul(self, other: Self) -> Self {
-        self.map(other, |a, b| a * b)
-    }
-}
-
-/// Symmetric matrices of four nodes: the diagonal, and yz, zx, xy.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Matrices {
-    pub(super) diagonal: Four,
-    pub(super) off: Four,
-}
-
-impl Matrices {
-    /// The outer product of each vector with itself, weighted.
-    #[inline]
-    pub(super) fn outer(a: Four, weight: Vec4) -> Self {
-        let w = a.times(weight);
-        let next = Four { x: a.y, y: a.z, z: a.x };
-        let turned = Four { x: w.z, y: w.x, z: w.y };
-        Self { diagonal: a * w, off: next * turned }
-    }
-
-    #[inline]
-    pub(super) fn ahead(self, next: Self) -> Self {
-        Self { diagonal: self.diagonal.ahead(next.diagonal), off: self.off.ahead(next.off) }
-    }
-
-    /// a M b of each.
-    #[inline]
-    pub(super) fn quadratic(&self, a: Four, b: Four) -> Vec4 {
-        let crossed = Four { x: a.y * b.z + a.z * b.y, y: a.z * b.x + a.x * b.z, z: a.x * b.y + a.y * b.x };
-        (a * b).dot(self.diagonal) + crossed.dot(self.off)
-    }
-}
-
-impl Add for Matrices {
-    type Output = Self;
-    #[inline]
-    fn add(self, other: Self) -> Self {
-        Self { diagonal: self.diagonal + other.diagonal, off: self.off + other.off }
     }
 }

@@ -1,9 +1,10 @@
 //! The few pulls that do not lie between neighboring wales: steps and other lone edges, turns, narrow tiles, the magic
 //! ring and the level of the last turn.
 
-use super::{Brink, Ends, Firm, Level, Relaxer, STEP_REST, STEP_WEIGHT, Scales, Span, TINY};
+use super::lanes::{Matrices, Vectors};
+use super::{Brink, Ends, Firm, LANES, Level, Relaxer, STEP_REST, STEP_WEIGHT, Scales, Span, TINY};
 use crate::generate::sheet::{EdgeKind, Quad, Sheet, TileKind};
-use glam::{DVec3, Vec3A, Vec4, Vec4Swizzles};
+use glam::{DVec3, Vec3A};
 
 /// A tile that has less than this share of its area left is pushed open, with this weight.
 const NARROW: f32 = 0.3;
@@ -37,8 +38,9 @@ pub(super) struct Narrow {
 
 impl Narrow {
     /// The share of its area that the tile has, and the derivatives of that by its diagonals.
-    fn share(&self, point: &[Vec4]) -> (f32, Vec3A, Vec3A) {
-        let [b0, b1, t0, t1] = self.corners.map(|i| Vec3A::from_vec4(point[i]));
+    #[inline(always)]
+    fn share(&self, point: &Vectors<3>) -> (f32, Vec3A, Vec3A) {
+        let [b0, b1, t0, t1] = self.corners.map(|i| point.get(i));
         let (rising, falling) = (t1 - b0, t0 - b1);
         let (by_rising, by_falling) = (falling.cross(self.normal), self.normal.cross(rising));
         (dot(rising, by_rising), by_rising, by_falling)
@@ -52,44 +54,31 @@ fn dot(a: Vec3A, b: Vec3A) -> f32 {
     product.x + product.y + product.z
 }
 
-#[inline]
-fn vec4(a: Vec3A) -> Vec4 {
-    a.extend(0.0)
-}
-
-/// Adds `weight` times the outer product of a vector with itself.
-fn add_outer(to: &mut [Vec4; 2], a: Vec3A, weight: f32) {
-    let a = vec4(a);
-    let w = a * weight;
-    to[0] += a * w;
-    to[1] += a.yzxw() * w.zxyw();
-}
-
 impl Relaxer {
     /// What loose edges and turns add to the matrices; and the narrow tiles and the level nodes, for the next few sweeps.
     pub(super) fn stiffen_loose(
         &mut self,
-        stiffness: &mut [[Vec4; 2]],
+        stiffness: &mut Matrices,
         sheet: &Sheet,
         span: &Span,
         scales: &Scales,
         ends: &Ends<'_>,
     ) {
-        let point = |i: usize| Vec3A::from_vec4(self.point[i]);
+        let point = |i: usize| self.point.get(i);
         for edge in &self.loose.edges {
             let (a, b) = (edge.a as usize - span.low, edge.b as usize - span.low);
             let (inverse, weight) = rest(edge.kind, scales);
             let d = point(b) - point(a);
             let weight = 2.0 * weight * inverse * inverse / dot(d, d).max(TINY);
             for i in [a, b] {
-                add_outer(&mut stiffness[i], d, weight);
+                stiffness.add_outer(i, d, weight);
             }
         }
         for quad in &self.loose.turns {
             let at = quad.corners.map(|id| id as usize - span.low);
             let (_, slopes) = turn(quad, at.map(point), scales);
             for (i, slope) in at.into_iter().zip(slopes) {
-                add_outer(&mut stiffness[i], slope, 4.0 * scales.tile(quad.kind));
+                stiffness.add_outer(i, slope, 4.0 * scales.tile(quad.kind));
             }
         }
         self.narrow.clear();
@@ -115,102 +104,102 @@ impl Relaxer {
                 let (du, dv) = (sheet.du[i], sheet.dv[i]);
                 // The matrix takes the whole weight along u; that it also takes some across is no harm.
                 let weight = pull.weight / sheet.height.powi(2);
-                add_outer(&mut stiffness[i - span.low], du.normalize_or_zero().as_vec3a(), weight as f32);
+                stiffness.add_outer(i - span.low, du.normalize_or_zero().as_vec3a(), weight as f32);
                 let across = du - dv * (du.dot(dv) / dv.length_squared().max(1e-30));
                 let dual = across / across.length_squared().max(1e-30);
                 let slack = rows.at(row + pull.slack) - rows.at(row);
                 self.level.push(Level {
                     slack: slack as f32,
                     node: i - span.first,
-                    dual: (dual * (weight * du.length_squared())).as_vec3().extend(0.0),
+                    dual: (dual * (weight * du.length_squared())).as_vec3a(),
                     way: (rows.at(row + LEVEL_SHIFT) - sheet.u[i]) as f32,
                 });
             }
         }
         if let Some((pole, count)) = ring(span, ends) {
-            let own = stiffness.iter_mut().zip(&self.point).skip(span.fringe());
-            for (own, point) in own.take(count) {
-                let d = Vec3A::from_vec4(*point - pole);
+            for i in span.fringe()..span.fringe() + count {
+                let d = self.point.get(i) - pole;
                 let weight = 1.0 / (scales.height * scales.height * dot(d, d).max(TINY));
-                add_outer(own, d, weight);
+                stiffness.add_outer(i, d, weight);
             }
         }
     }
 
     /// Finds the narrow tiles, and what they add to the matrices.
-    fn stiffen_narrow(&mut self, stiffness: &mut [[Vec4; 2]], sheet: &Sheet, span: &Span, scales: &Scales) {
+    fn stiffen_narrow(&mut self, stiffness: &mut Matrices, sheet: &Sheet, span: &Span, scales: &Scales) {
         let unit = 0.5 / (scales.width * scales.height);
-        for corners in self.columns.tiles() {
+        let (point, narrow) = (&self.point, &mut self.narrow);
+        self.columns.for_tiles(|corners| {
             let [b0, b1, t0, t1] = corners;
             let id = b0 + span.low;
             if b0 == b1 || t0 == t1 || id < span.first {
-                continue;
+                return;
             }
             let mut tile = Narrow { corners, normal: sheet.dv[id].cross(sheet.du[id]).as_vec3a() };
             // Most tiles are wide, and need no quotient.
             let length = dot(tile.normal, tile.normal).sqrt();
-            if tile.share(&self.point).0 * unit < 2.0 * NARROW * length {
+            if tile.share(point).0 * unit < 2.0 * NARROW * length {
                 tile.normal *= unit / length.max(f32::MIN_POSITIVE);
-                let (_, by_rising, by_falling) = tile.share(&self.point);
+                let (_, by_rising, by_falling) = tile.share(point);
                 let slopes = [by_rising, by_falling, by_falling, by_rising];
                 for (i, slope) in corners.into_iter().zip(slopes) {
-                    add_outer(&mut stiffness[i], slope, 4.0 * NARROW_WEIGHT);
+                    stiffness.add_outer(i, slope, 4.0 * NARROW_WEIGHT);
                 }
-                self.narrow.push(tile);
+                narrow.push(tile);
             }
-        }
+        });
     }
 
     /// Their pulls.
     pub(super) fn pull_loose(&mut self, span: &Span, scales: &Scales, ends: &Ends<'_>) {
-        let (points, gradient) = (&self.point[..], &mut self.gradient[..]);
-        let point = |i: usize| Vec3A::from_vec4(points[i]);
+        let (points, gradient) = (&self.point, &mut self.gradient);
+        let point = |i: usize| points.get(i);
         for edge in &self.loose.edges {
             let (a, b) = (edge.a as usize - span.low, edge.b as usize - span.low);
             let (inverse, weight) = rest(edge.kind, scales);
             let d = point(b) - point(a);
             let length = dot(d, d).max(TINY).sqrt();
-            let pull = vec4(d * (weight * inverse * (inverse - 1.0 / length)));
-            gradient[b] += pull;
-            gradient[a] -= pull;
+            let pull = d * (weight * inverse * (inverse - 1.0 / length));
+            gradient.add(b, pull);
+            gradient.add(a, -pull);
         }
         for quad in &self.loose.turns {
             let at = quad.corners.map(|id| id as usize - span.low);
             let (cos, slopes) = turn(quad, at.map(point), scales);
             for (i, slope) in at.into_iter().zip(slopes) {
-                gradient[i] += vec4(slope * (scales.tile(quad.kind) * cos));
+                gradient.add(i, slope * (scales.tile(quad.kind) * cos));
             }
         }
         for tile in &self.narrow {
             let (share, by_rising, by_falling) = tile.share(points);
             if share < NARROW {
                 let pull = NARROW_WEIGHT * (share - NARROW);
-                let (rising, falling) = (vec4(by_rising * pull), vec4(by_falling * pull));
+                let (rising, falling) = (by_rising * pull, by_falling * pull);
                 let [b0, b1, t0, t1] = tile.corners;
-                gradient[t1] += rising;
-                gradient[t0] += falling;
-                gradient[b0] -= rising;
-                gradient[b1] -= falling;
+                gradient.add(t1, rising);
+                gradient.add(t0, falling);
+                gradient.add(b0, -rising);
+                gradient.add(b1, -falling);
             }
         }
         for level in &self.level {
-            let off = self.nodes[level.node / 4].way[0][level.node % 4] - level.way;
+            let off = self.nodes[level.node / LANES].way[0][level.node % LANES] - level.way;
             let cap = level.slack * LEVEL_CAP;
             let beyond = (off - off.clamp(-level.slack, level.slack)).clamp(-cap, cap);
-            gradient[span.fringe() + level.node] += level.dual * beyond;
+            gradient.add(span.fringe() + level.node, level.dual * beyond);
         }
         if let Some((pole, count)) = ring(span, ends) {
             for i in span.fringe()..span.fringe() + count {
-                let d = Vec3A::from_vec4(points[i] - pole);
+                let d = points.get(i) - pole;
                 let length = dot(d, d).max(TINY).sqrt();
-                gradient[i] += vec4(d * ((1.0 / scales.height - 1.0 / length) / scales.height));
+                gradient.add(i, d * ((1.0 / scales.height - 1.0 / length) / scales.height));
             }
         }
     }
 }
 
 /// The center of the magic ring, and how many of the first free nodes have their posts in it.
-fn ring(span: &Span, ends: &Ends<'_>) -> Option<(Vec4, usize)> {
+fn ring(span: &Span, ends: &Ends<'_>) -> Option<(Vec3A, usize)> {
     let (pole, count): (DVec3, usize) = ends.ring?;
     Some((span.local(pole), count.saturating_sub(span.first).min(span.count)))
 }

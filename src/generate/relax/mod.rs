@@ -7,6 +7,8 @@
 //! error of a ten-thousandth of a stitch at worst. The places (u, v) themselves stay in double precision, and points are
 //! looked up again from them.
 
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for wider instructions")]
+
 mod columns;
 mod lanes;
 mod loose;
@@ -15,8 +17,9 @@ use super::rows::Rows;
 use super::sheet::{Sheet, TileKind};
 use crate::shape::ParametricSurface;
 use columns::{Columns, Loose};
-use glam::{DVec3, Vec4, Vec4Swizzles};
-use lanes::{Four, Matrices, root};
+use glam::{DVec3, Vec3A};
+use lanes::{Matrices, Vectors, dot, larger, quadratic, smaller, square};
+use pulp::{Arch, NullaryFnOnce};
 
 /// Weight of the soft links that close the steps at short-row ends, and their rest length in stitch widths.
 pub(super) const STEP_WEIGHT: f32 = 0.2;
@@ -34,6 +37,8 @@ const REFRESH: u32 = 7;
 const MOMENTUM: f32 = 0.85;
 /// Longest step of a sweep, in stitch heights.
 const LONGEST: f32 = 0.3;
+/// Nodes are moved so many at a time.
+const LANES: usize = 8;
 /// Squares of lengths below this count as this, against quotients of nothing.
 const TINY: f32 = 1e-18;
 
@@ -140,40 +145,102 @@ fn shares(kind: TileKind) -> u8 {
 pub(crate) struct Relaxer {
     columns: Columns,
     loose: Loose,
-    /// Points from the lowest node that a free one hangs on, relative to `origin`, and the pull at each, or the two parts of its
-    /// matrix. Both are filled up to whole blocks of free nodes.
-    point: Vec<Vec4>,
-    gradient: Vec<Vec4>,
-    /// Blocks of four free nodes.
+    /// Points from the lowest node that a free one hangs on, relative to `origin`, the pull at each, and its matrix. All are filled
+    /// up to whole blocks of free nodes.
+    point: Vectors<3>,
+    gradient: Vectors<3>,
+    stiffness: Matrices,
+    /// Blocks of free nodes.
     nodes: Vec<Nodes>,
     /// Free tops of the last turn.
     level: Vec<Level>,
     narrow: Vec<loose::Narrow>,
 }
 
-/// Four free nodes.
+/// A number of each node of a block.
+type Each = [f32; LANES];
+
+/// A block of free nodes.
 #[derive(Clone, Copy, Debug, Default)]
 struct Nodes {
     /// Derivatives of the surface.
-    du: Four,
-    dv: Four,
+    du: [Each; 3],
+    dv: [Each; 3],
     /// Inverse of each node's matrix in (u, v): uu, uv, vv.
-    inverse: [Vec4; 3],
+    inverse: [Each; 3],
     /// Where along u they were at the last look at the surface, and the way since then.
-    start: Vec4,
-    way: [Vec4; 2],
+    start: Each,
+    way: [Each; 2],
     /// The way of the last sweep.
-    last: [Vec4; 2],
+    last: [Each; 2],
 }
 
 impl Nodes {
-    #[inline]
-    fn begin(&mut self, du: [Vec4; 4], dv: [Vec4; 4], u: &[f64; 4]) {
-        self.du = Four::new(du);
-        self.dv = Four::new(dv);
-        self.way = [Vec4::ZERO; 2];
-        self.start = Vec4::from_array(u.map(|u| u as f32));
+    /// Takes up the inverse of each matrix, between the derivatives.
+    #[inline(always)]
+    fn invert(&mut self, matrices: [&Each; 6]) {
+        for k in 0..LANES {
+            let at = |axes: &[Each; 3]| [axes[0][k], axes[1][k], axes[2][k]];
+            let (du, dv, matrix) = (at(&self.du), at(&self.dv), matrices.map(|axis| axis[k]));
+            let damped = |h: f32| h * 1.001 + 1e-12;
+            let (huu, huv, hvv) = (
+                damped(quadratic(matrix, du, du)),
+                quadratic(matrix, du, dv),
+                damped(quadratic(matrix, dv, dv)),
+            );
+            let det = huu * hvv - huv * huv;
+            // Without a branch, so that many are inverted at a time.
+            let scale = f32::from(u8::from(det > 0.0)) / larger(det, f32::MIN_POSITIVE);
+            self.inverse[0][k] = hvv * scale;
+            self.inverse[1][k] = -huv * scale;
+            self.inverse[2][k] = huu * scale;
+        }
     }
+
+    /// One damped Newton step per node in its own (u, v), and its momentum; points follow to first order.
+    #[inline(always)]
+    fn step(&mut self, points: [&mut Each; 3], gradients: [&Each; 3], stride: &Stride) {
+        let mut moved = [Each::default(); 3];
+        for k in 0..LANES {
+            let at = |axes: &[Each; 3]| [axes[0][k], axes[1][k], axes[2][k]];
+            let (du, dv, [uu, uv, vv]) = (at(&self.du), at(&self.dv), at(&self.inverse));
+            let gradient = [gradients[0][k], gradients[1][k], gradients[2][k]];
+            let along = |by_u: f32, by_v: f32| std::array::from_fn(|axis| du[axis] * by_u + dv[axis] * by_v);
+            let (low, high) =
+                (smaller(stride.range[0] - self.start[k], 0.0), larger(stride.range[1] - self.start[k], 0.0));
+            let (gu, gv) = (dot(gradient, du), dot(gradient, dv));
+            let (x, y) = (-(uu * gu + uv * gv), -(uv * gu + vv * gv));
+            let length = larger(square(along(x, y)), stride.longest);
+            let scale = (stride.longest / length).sqrt();
+            // The sweep began ahead of where the last one ended, by the momentum that it was given.
+            let (u, v) = (self.way[0][k], self.way[1][k]);
+            let new_u = smaller(larger(u + x * scale, low), high);
+            let new_v = v + y * scale;
+            let ahead_u = smaller(larger(new_u + stride.momentum * (new_u - u + self.last[0][k]), low), high);
+            let ahead_v = new_v + stride.momentum * (new_v - v + self.last[1][k]);
+            self.last[0][k] = ahead_u - new_u;
+            self.last[1][k] = ahead_v - new_v;
+            self.way[0][k] = ahead_u;
+            self.way[1][k] = ahead_v;
+            let way: [f32; 3] = along(ahead_u - u, ahead_v - v);
+            for (moved, way) in moved.iter_mut().zip(way) {
+                moved[k] = way;
+            }
+        }
+        for (points, moved) in points.into_iter().zip(moved) {
+            for (point, moved) in points.iter_mut().zip(moved) {
+                *point += moved;
+            }
+        }
+    }
+}
+
+/// How far a sweep goes.
+struct Stride {
+    momentum: f32,
+    /// Longest step, squared.
+    longest: f32,
+    range: [f32; 2],
 }
 
 /// A node that is pulled to its level.
@@ -182,7 +249,7 @@ struct Level {
     /// Index among the free nodes.
     node: usize,
     /// The change of its point whose product with `du` is one and with `dv` zero, times the weight.
-    dual: Vec4,
+    dual: Vec3A,
     /// The way along u to its level, and how far off it may stay.
     way: f32,
     slack: f32,
@@ -206,8 +273,8 @@ impl Span {
     fn fringe(&self) -> usize {
         self.first - self.low
     }
-    fn local(&self, point: DVec3) -> Vec4 {
-        (point - self.origin).as_vec3().extend(0.0)
+    fn local(&self, point: DVec3) -> Vec3A {
+        (point - self.origin).as_vec3a()
     }
 }
 
@@ -239,59 +306,71 @@ impl Relaxer {
         let low = self.columns.take(edges, quads, first, &mut self.loose);
         let span = Span { low, first, count: end - first, origin: sheet.point[first] };
         self.nodes.clear();
-        self.nodes.resize(span.count.div_ceil(4), Nodes::default());
-        self.take(sheet, &span);
-        let mut refresh = REFRESH;
-        for sweep in 0..effort.sweeps {
-            if sweep == 0 || sweep == refresh {
-                if sweep > 0 {
-                    refresh *= 2;
-                    self.commit(sheet, &span, ends.range);
-                    for i in first..end {
-                        look(surface, sheet, i);
-                    }
-                    self.take(sheet, &span);
-                }
-                self.stiffen(sheet, &span, &scales, &ends);
-            }
-            self.gradient.clear();
-            self.gradient.resize(self.point.len(), Vec4::ZERO);
-            if ends.tail() {
-                self.columns.pull::<true>(&self.point, &mut self.gradient, &scales);
-            } else {
-                self.columns.pull::<false>(&self.point, &mut self.gradient, &scales);
-            }
-            self.pull_loose(&span, &scales, &ends);
-            let next = sweep as f32 + 1.0;
-            let momentum = if sweep + 1 == effort.sweeps { 0.0 } else { MOMENTUM.min(next / (next + 3.0)) };
-            self.step(span.fringe(), momentum, LONGEST * scales.height, ends.range);
-        }
+        self.nodes.resize(span.count.div_ceil(LANES), Nodes::default());
+        Arch::new().dispatch(Sweeps { relaxer: self, surface, sheet, span, scales, effort, ends });
         self.commit(sheet, &span, ends.range);
         let settled = first.max(exact).min(end);
-        for (point, own) in sheet.point[first..settled].iter_mut().zip(&self.point[span.fringe()..]) {
-            *point = span.origin + own.xyz().as_dvec3();
+        for (i, point) in (span.fringe()..).zip(&mut sheet.point[first..settled]) {
+            *point = span.origin + self.point.get(i).as_dvec3();
         }
         for i in settled..end {
             look(surface, sheet, i);
         }
     }
 
+    #[inline(always)]
+    fn sweep(
+        &mut self,
+        surface: &dyn ParametricSurface,
+        sheet: &mut Sheet,
+        span: &Span,
+        scales: &Scales,
+        effort: Effort,
+        ends: &Ends<'_>,
+    ) {
+        self.take(sheet, span);
+        let mut refresh = REFRESH;
+        for sweep in 0..effort.sweeps {
+            if sweep == 0 || sweep == refresh {
+                if sweep > 0 {
+                    refresh *= 2;
+                    self.commit(sheet, span, ends.range);
+                    for i in span.first..span.end() {
+                        look(surface, sheet, i);
+                    }
+                    self.take(sheet, span);
+                }
+                self.stiffen(sheet, span, scales, ends);
+            }
+            self.gradient.reset(self.point.len());
+            if ends.tail() {
+                self.columns.pull::<true>(&self.point, &mut self.gradient, scales);
+            } else {
+                self.columns.pull::<false>(&self.point, &mut self.gradient, scales);
+            }
+            self.pull_loose(span, scales, ends);
+            let next = sweep as f32 + 1.0;
+            let momentum = if sweep + 1 == effort.sweeps { 0.0 } else { MOMENTUM.min(next / (next + 3.0)) };
+            let longest = (LONGEST * scales.height).powi(2);
+            self.step(span.fringe(), &Stride { momentum, longest, range: ends.range.map(|u| u as f32) });
+        }
+    }
+
     /// Takes up points and derivatives; the nodes have gone no way yet.
     fn take(&mut self, sheet: &Sheet, span: &Span) {
-        self.point.clear();
-        self.point.extend(sheet.point[span.low..span.end()].iter().map(|point| span.local(*point)));
-        self.point.resize(span.fringe() + 4 * self.nodes.len(), Vec4::ZERO);
-        let vector = |d: &DVec3| d.as_vec3().extend(0.0);
-        let free = sheet.du[span.first..span.end()].chunks(4).zip(sheet.dv[span.first..span.end()].chunks(4));
-        let us = sheet.u[span.first..span.end()].chunks(4);
-        for ((nodes, (du, dv)), u) in self.nodes.iter_mut().zip(free).zip(us) {
-            if let (Ok(du), Ok(dv), Ok(u)) = (<&[_; 4]>::try_from(du), <&[_; 4]>::try_from(dv), u.try_into())
-            {
-                nodes.begin(du.each_ref().map(vector), dv.each_ref().map(vector), u);
-            } else {
-                let padded = |d: &[DVec3]| std::array::from_fn(|lane| d.get(lane).map_or(Vec4::ZERO, vector));
-                let u = std::array::from_fn(|lane| u.get(lane).copied().unwrap_or_default());
-                nodes.begin(padded(du), padded(dv), &u);
+        let count = span.fringe() + LANES * self.nodes.len();
+        self.point.refill(sheet.point[span.low..span.end()].iter().map(|point| span.local(*point)), count);
+        let free = span.first..span.end();
+        let derivatives = sheet.du[free.clone()].chunks(LANES).zip(sheet.dv[free.clone()].chunks(LANES));
+        let places = derivatives.zip(sheet.u[free].chunks(LANES));
+        for (nodes, ((du, dv), u)) in self.nodes.iter_mut().zip(places) {
+            *nodes = Nodes { inverse: nodes.inverse, last: nodes.last, ..Nodes::default() };
+            for (k, ((du, dv), u)) in du.iter().zip(dv).zip(u).enumerate() {
+                for axis in 0..3 {
+                    nodes.du[axis][k] = du[axis] as f32;
+                    nodes.dv[axis][k] = dv[axis] as f32;
+                }
+                nodes.start[k] = *u as f32;
             }
         }
     }
@@ -299,76 +378,67 @@ impl Relaxer {
     /// Writes the way of the nodes into the sheet.
     fn commit(&self, sheet: &mut Sheet, span: &Span, [low, high]: [f64; 2]) {
         let free = span.first..span.end();
-        let places = sheet.u[free.clone()].chunks_mut(4).zip(sheet.v[free].chunks_mut(4));
+        let places = sheet.u[free.clone()].chunks_mut(LANES).zip(sheet.v[free].chunks_mut(LANES));
         for ((us, vs), nodes) in places.zip(&self.nodes) {
-            let [by_u, by_v] = nodes.way.map(|way| way.to_array());
-            for (lane, (u, v)) in us.iter_mut().zip(vs).enumerate() {
-                if by_u[lane] != 0.0 {
-                    *u = (*u + f64::from(by_u[lane])).clamp(low, high);
+            let ways = nodes.way[0].into_iter().zip(nodes.way[1]);
+            for ((u, v), (by_u, by_v)) in us.iter_mut().zip(vs).zip(ways) {
+                if by_u != 0.0 {
+                    *u = (*u + f64::from(by_u)).clamp(low, high);
                 }
-                *v += f64::from(by_v[lane]);
+                *v += f64::from(by_v);
             }
         }
     }
 
     /// Takes up the inverse matrices and what else is good for a few sweeps.
+    #[inline(always)]
     fn stiffen(&mut self, sheet: &Sheet, span: &Span, scales: &Scales, ends: &Ends<'_>) {
-        // The matrices lie where the pulls will.
-        let mut matrices = std::mem::take(&mut self.gradient);
-        matrices.clear();
-        matrices.resize(2 * self.point.len(), Vec4::ZERO);
-        let stiffness = matrices.as_chunks_mut::<2>().0;
+        let mut stiffness = std::mem::take(&mut self.stiffness);
+        stiffness.reset(self.point.len());
         if ends.tail() {
-            self.columns.stiffen::<true>(&self.point, stiffness, scales);
+            self.columns.stiffen::<true>(&self.point, &mut stiffness, scales);
         } else {
-            self.columns.stiffen::<false>(&self.point, stiffness, scales);
+            self.columns.stiffen::<false>(&self.point, &mut stiffness, scales);
         }
-        self.stiffen_loose(stiffness, sheet, span, scales, ends);
-        let own = stiffness[span.fringe()..].chunks_exact(4);
-        for (nodes, own) in self.nodes.iter_mut().zip(own) {
-            let part = |i: usize| Four::new([own[0][i], own[1][i], own[2][i], own[3][i]]);
-            let matrices = Matrices { diagonal: part(0), off: part(1) };
-            let (du, dv) = (nodes.du, nodes.dv);
-            let damped = |h: Vec4| h * 1.001 + Vec4::splat(1e-12);
-            let (huu, huv, hvv) = (
-                damped(matrices.quadratic(du, du)),
-                matrices.quadratic(du, dv),
-                damped(matrices.quadratic(dv, dv)),
-            );
-            let det = huu * hvv - huv * huv;
-            let scale = Vec4::select(det.cmpgt(Vec4::ZERO), det.recip(), Vec4::ZERO);
-            nodes.inverse = [hvv * scale, -huv * scale, huu * scale];
+        self.stiffen_loose(&mut stiffness, sheet, span, scales, ends);
+        let own = stiffness.axes(span.fringe()).map(|axis| axis.as_chunks().0);
+        for (block, nodes) in self.nodes.iter_mut().enumerate() {
+            nodes.invert(own.map(|axis| &axis[block]));
         }
-        self.gradient = matrices;
+        self.stiffness = stiffness;
     }
 
-    /// One damped Newton step per node in its own (u, v), and its momentum; points follow to first order.
-    fn step(&mut self, fringe: usize, momentum: f32, longest: f32, range: [f64; 2]) {
-        let range = range.map(|u| Vec4::splat(u as f32));
-        let (momentum, longest) = (Vec4::splat(momentum), Vec4::splat(longest * longest));
-        let points = self.point[fringe..].chunks_exact_mut(4);
-        let gradients = self.gradient[fringe..].chunks_exact(4);
-        for ((nodes, points), gradients) in self.nodes.iter_mut().zip(points).zip(gradients) {
-            let Nodes { du, dv, inverse: [uu, uv, vv], start, way: [u, v], last } = *nodes;
-            let (low, high) = ((range[0] - start).min(Vec4::ZERO), (range[1] - start).max(Vec4::ZERO));
-            let gradient = Four::new([gradients[0], gradients[1], gradients[2], gradients[3]]);
-            let (gu, gv) = (gradient.dot(du), gradient.dot(dv));
-            let (x, y) = (-(uu * gu + uv * gv), -(uv * gu + vv * gv));
-            let way = du.times(x) + dv.times(y);
-            let length = way.dot(way).max(longest);
-            let scale = root(longest / length);
-            // The sweep began ahead of where the last one ended, by the momentum that it was given.
-            let new_u = (u + x * scale).max(low).min(high);
-            let new_v = v + y * scale;
-            let ahead_u = (new_u + momentum * (new_u - u + last[0])).max(low).min(high);
-            let ahead_v = new_v + momentum * (new_v - v + last[1]);
-            nodes.last = [ahead_u - new_u, ahead_v - new_v];
-            nodes.way = [ahead_u, ahead_v];
-            let moved = du.times(ahead_u - u) + dv.times(ahead_v - v);
-            for (point, way) in points.iter_mut().zip(moved.each()) {
-                *point += way;
-            }
+    /// A step of each node.
+    #[inline(always)]
+    fn step(&mut self, fringe: usize, stride: &Stride) {
+        let [x, y, z] = self.point.axes_mut(fringe).map(|axis| axis.as_chunks_mut::<LANES>().0);
+        let [gx, gy, gz] = self.gradient.axes(fringe).map(|axis| axis.as_chunks::<LANES>().0);
+        let points = x.iter_mut().zip(y).zip(z);
+        let gradients = gx.iter().zip(gy).zip(gz);
+        for ((nodes, ((x, y), z)), ((gx, gy), gz)) in self.nodes.iter_mut().zip(points).zip(gradients) {
+            nodes.step([x, y, z], [gx, gy, gz], stride);
         }
+    }
+}
+
+/// All sweeps of a relaxation, compiled once for processors with wider instructions. These round as the others do.
+struct Sweeps<'r, 's, 'e> {
+    relaxer: &'r mut Relaxer,
+    surface: &'s dyn ParametricSurface,
+    sheet: &'r mut Sheet,
+    span: Span,
+    scales: Scales,
+    effort: Effort,
+    ends: Ends<'e>,
+}
+
+impl NullaryFnOnce for Sweeps<'_, '_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { relaxer, surface, sheet, span, scales, effort, ends } = self;
+        relaxer.sweep(surface, sheet, &span, &scales, effort, &ends);
     }
 }
 
