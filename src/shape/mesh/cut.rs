@@ -3,6 +3,7 @@
 use super::divide::Division;
 use super::ends::{Ends, Tip};
 use super::field::Flows;
+use super::flat::Course;
 use super::levels::Levels;
 use super::limb::{self, Root};
 use super::tree::{Limb, Tree};
@@ -49,6 +50,8 @@ const GIVE: f64 = 1.0;
 /// Most openings of a mesh that is cut while faulty ones are sought.
 const FEW_OPENINGS: usize = 8;
 
+/// Closed ends that lie farther from their axis than this (rows) are moved to it.
+const OFF: f64 = 0.5;
 /// How often flows are poured again at most.
 const POURS: u32 = 2;
 
@@ -250,11 +253,11 @@ impl Mesh {
         // What divides is cut up only where it hangs on something that does not.
         last.sort_by_key(|i| (divisions.contains_key(i), *i));
         let Some(fork) = last.first().filter(|_| !all_divide).map(|i| &tree.limbs[*i]) else {
-            let mut pieces = Vec::new();
-            if ends.off.is_empty() {
-                self.pieces(&tree, &field, ends, &ways, (plan, &divisions), &mut pieces)?;
+            if !ends.off.is_empty() {
+                return Ok(Next::Pieces(Vec::new()));
             }
-            return Ok(Next::Pieces(pieces));
+            let pieces = self.pieces(&tree, &field, ends, &ways, (plan, &divisions))?;
+            return Ok(pieces.map_or(Next::Ends, Next::Pieces));
         };
         let (before, girth) = levels.course(fork, &ways, false);
         let leaves: Vec<usize> = fork.children.iter().map(|child| tree.limbs[*child].leaf).collect();
@@ -297,10 +300,11 @@ impl Mesh {
     /// flow is poured again around where the first one says that the middle is.
     fn flow(&self, plan: &Plan, flows: &mut Flows<'_>, ends: &mut Ends) -> Vec<f64> {
         let mut field = flows.field(plan.field, ends);
-        let found = [plan.start.is_none(), plan.poles.is_empty()];
+        let found = free(plan);
         for _ in 0..POURS {
             self.climb(&field, ends);
-            if plan.field != Field::Harmonic || !self.centered(&field, ends, found, 0.5 * plan.gauge.height) {
+            let may = plan.field == Field::Harmonic && ends.aims == 0;
+            if !may || !self.centered(&field, ends, found, OFF * plan.gauge.height) {
                 return field;
             }
             field = flows.field(plan.field, ends);
@@ -316,16 +320,16 @@ impl Mesh {
         }
     }
 
-    /// Stacks the level lines of every limb, trunk first.
+    /// Stacks the level lines of every limb, trunk first; `None` where its ends have been moved.
     fn pieces(
         &self,
         tree: &Tree,
         field: &[f64],
-        ends: &Ends,
+        ends: &mut Ends,
         ways: &[Way],
         (plan, divisions): (&Plan, &BTreeMap<usize, Division>),
-        pieces: &mut Vec<Piece>,
-    ) -> Result<(), Fault> {
+    ) -> Result<Option<Vec<Piece>>, Fault> {
+        let mut pieces: Vec<Piece> = Vec::new();
         let levels = Levels { mesh: self, field };
         let field_at = |v: u32| field[v as usize];
         let row = plan.gauge.height;
@@ -361,23 +365,25 @@ impl Mesh {
                 poles[1] = Some(self.middle(tip));
                 high = ways[limb.leaf].level(&field_at, FIRST_RING * row, true);
             }
-            let rings = levels.stack([low, high], &ways[limb.leaf].vertices, spacing, first, last.as_ref());
-            let around = samples_around(rings.iter().map(|(ring, _)| ring), plan);
-            let stack = match (&parent, plan.seam) {
-                (None, Some(seam)) => {
-                    let mut rings: Vec<Ring> = rings.into_iter().map(|(ring, _)| ring).collect();
-                    if let Some(ring) = rings.first_mut() {
-                        *ring = ring.begun_near(seam);
+            let course = Course { way: &ways[limb.leaf].vertices, spacing, row, first, last };
+            let mut lines = levels.along([low, high], &course);
+            let seam = plan.seam.filter(|_| parent.is_none());
+            let none = Fault::NoRows { at: self.middle(tip) };
+            let mut stack = stacked(&lines.rings, poles, seam, plan).ok_or(none)?;
+            let whole = parent.is_none() && division.is_none();
+            if whole && !stack.revolve(plan.gauge.width, &self.points) && ends.whole {
+                if let Some(flat) = levels.laid_flat(&lines, &course) {
+                    if plan.field == Field::Harmonic && self.aim(ends, free(plan), &flat, row) {
+                        return Ok(None);
                     }
-                    Stack::new(&rings, poles, around)
+                    lines = flat.lines;
+                    stack = stacked(&lines.rings, poles, seam, plan).unwrap_or(stack);
                 }
-                _ => Stack::turned(&rings, poles, around),
-            };
-            let Some(mut stack) = stack else {
-                return Err(Fault::NoRows { at: self.middle(tip) });
-            };
-            if parent.is_none() && division.is_none() {
-                stack.revolve(plan.gauge.width, &self.points);
+                if seam.is_none() {
+                    let by = stack.slowest_side();
+                    lines.rings.iter_mut().for_each(|(_, phase)| *phase += by);
+                    stack = stacked(&lines.rings, poles, seam, plan).unwrap_or(stack);
+                }
             }
             let here = pieces.len();
             let ends = stack.ends();
@@ -394,7 +400,7 @@ impl Mesh {
             }
             open.extend(next.into_iter().rev());
         }
-        Ok(())
+        Ok(Some(pieces))
     }
 
     /// An open edge as the first (or last) loop: clockwise seen from the end of the tube.
@@ -439,6 +445,27 @@ impl Levels<'_> {
         let last = rings.iter().rev().find(|ring| ring.length() < 1.25 * thin);
         (last.map_or(DVec3::ZERO, Ring::center), thin)
     }
+}
+
+/// Whether the start and the other ends may be moved: where they are not named.
+fn free(plan: &Plan) -> [bool; 2] {
+    [plan.start.is_none(), plan.poles.is_empty()]
+}
+
+/// A tube through lines, begun near a point where one is named.
+fn stacked(
+    lines: &[(Ring, f64)],
+    poles: [Option<DVec3>; 2],
+    seam: Option<DVec3>,
+    plan: &Plan,
+) -> Option<Stack> {
+    let around = samples_around(lines.iter().map(|(ring, _)| ring), plan);
+    let Some(seam) = seam else { return Stack::turned(lines, poles, around) };
+    let mut rings: Vec<Ring> = lines.iter().map(|(ring, _)| ring.clone()).collect();
+    if let Some(ring) = rings.first_mut() {
+        *ring = ring.begun_near(seam);
+    }
+    Stack::new(&rings, poles, around)
 }
 
 /// True when there is room for a body between limbs of these middles and girths.

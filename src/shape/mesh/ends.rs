@@ -67,6 +67,10 @@ pub(super) struct Ends {
     pub(super) distance: Vec<f64>,
     /// Whether fields keep to the maximum principle at the cost of distortion.
     pub(super) strict: bool,
+    /// Whether the mesh is as it was: where limbs were cut off, lines run over the places that were closed.
+    pub(super) whole: bool,
+    /// How often closed ends have been moved to the axis of a tube.
+    pub(super) aims: u32,
 }
 
 impl Ends {
@@ -114,7 +118,7 @@ impl Ends {
                 }
             }
         }
-        let mut ends = Self { start, others, off: Vec::new(), distance, strict: false };
+        let mut ends = Self { start, others, off: Vec::new(), distance, strict: false, whole: true, aims: 0 };
         ends.place();
         let far = ends.others.iter().map(|tip| tip.at).fold(0.0, f64::max);
         ends.start.measure(mesh, NEAR * far, row);

@@ -18,6 +18,12 @@ pub(super) struct Levels<'m> {
     pub(super) field: &'m [f64],
 }
 
+/// Lines from one end of a limb to the other, with the phase of each, and their levels.
+pub(super) struct Lines {
+    pub(super) rings: Vec<(Ring, f64)>,
+    pub(super) levels: Vec<f64>,
+}
+
 impl Levels<'_> {
     /// The line at a level that passes the given way down; its points run clockwise seen from above the level.
     pub(super) fn line(&self, level: f64, way: &[u32]) -> Option<Ring> {
@@ -74,16 +80,18 @@ impl Levels<'_> {
         spacing: f64,
         first: Option<Ring>,
         last: Option<&Ring>,
-    ) -> Vec<(Ring, f64)> {
+    ) -> Lines {
         let range = high - low;
         let least = 1e-4 * range;
         let mut rings: Vec<(Ring, f64)> = Vec::new();
+        let mut at_levels = Vec::new();
         let mut at = low;
         let mut step = spacing.min(range);
         let mut samples: Option<Vec<DVec3>> = None;
         if let Some(ring) = first.or_else(|| self.line(low, way)) {
             samples = Some(ring.samples(SAMPLES, 0.0));
             rings.push((ring, 0.0));
+            at_levels.push(low);
         }
         let mut missed = 0;
         while at < high && rings.len() < MOST_LEVELS && missed < MOST_MISSED {
@@ -114,8 +122,9 @@ impl Levels<'_> {
             step = ((next - at) * (1.0 / far.max(0.3)).clamp(0.5, 2.0)).max(least);
             at = next;
             rings.push((ring, phase));
+            at_levels.push(at);
             samples = Some(placed);
         }
-        rings
+        Lines { rings, levels: at_levels }
     }
 }

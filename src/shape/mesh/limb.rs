@@ -196,7 +196,7 @@ impl Mesh {
         let spacing = plan.gauge.height.max(0.4 * self.mean_edge());
         let (last, pole) =
             if tip.open { (self.opening(&tip.ring, true), None) } else { (None, Some(self.middle(tip))) };
-        let rings = levels.stack([level, root.high], &root.way.vertices, spacing, None, last.as_ref());
+        let rings = levels.stack([level, root.high], &root.way.vertices, spacing, None, last.as_ref()).rings;
         let end = pole.or_else(|| rings.last().map(|(ring, _)| ring.center())).unwrap_or_default();
         let around = samples_around(rings.iter().map(|(ring, _)| ring), plan);
         Limb { stack: Stack::turned(&rings, [None, pole], around), end }
@@ -235,7 +235,8 @@ impl Mesh {
         if others.iter().chain([&start]).any(|tip| tip.ring.is_empty()) {
             return Err(fault());
         }
-        let ends = Ends { start, others, off: Vec::new(), distance: Vec::new(), strict: ends.strict };
+        let (off, distance) = (Vec::new(), Vec::new());
+        let ends = Ends { start, others, off, distance, strict: ends.strict, whole: false, aims: 0 };
         Ok((Severed { mesh, ends, place }, limb))
     }
 

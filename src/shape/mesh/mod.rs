@@ -6,6 +6,7 @@ mod divide;
 mod ends;
 mod factor;
 mod field;
+mod flat;
 mod gate;
 mod geodesic;
 mod handle;
