@@ -192,6 +192,9 @@ fn a_shape_file_and_its_mesh_agree() {
         "mushroom-stem",
         "cylinder",
         "horn",
+        "elbow",
+        "mitten",
+        "paper/d",
     ];
     for name in names {
         let [one, other] = rounds_of_both(name);
@@ -199,16 +202,72 @@ fn a_shape_file_and_its_mesh_agree() {
     }
     // A round or two may be shaped a little earlier or later at the same price, and so may short rows lie; and a mesh does not
     // say where to begin.
-    for (name, turned) in
-        [("pear", false), ("bottle", false), ("elbow", false), ("paper/d", false), ("cone", true)]
-    {
+    for (name, turned) in [("pear", false), ("bottle", false), ("cone", true)] {
         let [one, mut other] = rounds_of_both(name);
         if turned {
             other.reverse();
         }
-        let more = one.len().abs_diff(other.len());
-        assert!(more <= usize::from(name == "paper/d"), "{name}: {one:?} {other:?}");
+        assert_eq!(one.len(), other.len(), "{name}: {one:?} {other:?}");
         assert!(apart(&one, &other) <= 2, "{name}: {one:?} {other:?}");
+    }
+}
+
+/// A shape file, and its surface as triangles from the same end on.
+fn from_the_same_end(name: &str) -> [Shape; 2] {
+    let path = format!("{}/shapes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    #[expect(clippy::disallowed_methods, reason = "tests read their cases from the disk")]
+    let text = std::fs::read(path).expect("readable");
+    let settings = Options { gauge: None, ..options(1.0) };
+    let shape = load("x.toml", &text, &settings).0.expect("a sound file");
+    let closed = [shape.tubes[0].start, shape.tubes[0].end].map(|end| end == End::Closed);
+    let surface = &*shape.tubes[0].surface;
+    let solid = triangles(surface, closed);
+    let first = (0..32).map(|k| surface.point(0.0, f64::from(k) / 32.0)).sum::<DVec3>() / 32.0;
+    let [x, y, z] = first.to_array();
+    let Gauge { width, height, .. } = shape.gauge;
+    let file = format!(
+        "unit = \"mm\"\n[gauge]\nstitch = {{ width = {width}, height = {height} }}\n\
+         [mesh]\nfile = \"x.obj\"\nunit = \"mm\"\nup = \"z\"\nstart = [{x}, {y}, {z}]\n"
+    );
+    let cut = load_beside("y.toml", file.as_bytes(), &settings, &|_| Ok(solid.obj()));
+    [shape, cut.0.expect("a sound mesh")]
+}
+
+/// How far the line of a tube at u is off the plane across the axis there.
+fn tilt(surface: &dyn ParametricSurface, u: f64) -> f64 {
+    const AROUND: u32 = 32;
+    let line = |u: f64| (0..AROUND).map(move |k| surface.point(u, f64::from(k) / f64::from(AROUND)));
+    let middle = |u: f64| line(u).sum::<DVec3>() / f64::from(AROUND);
+    let axis = (middle(u + 0.01) - middle(u - 0.01)).normalize();
+    line(u).map(|p| (p - middle(u)).dot(axis).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn lines_of_a_bent_mesh_lie_across_its_axis() {
+    for (name, most) in
+        [("cane", 0.1), ("snake", 0.2), ("worm", 0.2), ("horn", 0.1), ("paper/c", 0.1), ("paper/d", 0.1)]
+    {
+        let [_, cut] = from_the_same_end(name);
+        for k in 3..18 {
+            let u = f64::from(k) / 20.0;
+            let rows = tilt(&*cut.tubes[0].surface, u) / cut.gauge.height;
+            assert!(rows < most, "{name}: {rows} rows at {u}");
+        }
+    }
+}
+
+#[test]
+fn a_winding_shape_file_and_its_mesh_have_as_many_stitches() {
+    // Where the axis winds, a short row that opens one round later moves all that follow: the snake's own file has another count in
+    // more than half of its rounds when it is made smaller by a ten thousandth, and the worm's when it is made larger by a tenth of that.
+    for name in ["cane", "snake", "worm", "paper/b"] {
+        let [shape, cut] = from_the_same_end(name);
+        let settings = options(1.0);
+        let [one, other] = [shape, cut].map(|shape| counts(&pattern(shape, &settings).1));
+        let sums = [&one, &other].map(|rounds| rounds.iter().sum::<usize>() as f64);
+        assert!((sums[1] / sums[0] - 1.0).abs() < 0.03, "{name}: {one:?} {other:?}");
+        assert!(one.len().abs_diff(other.len()) <= 1, "{name}: {one:?} {other:?}");
+        assert!(4 * apart(&one, &other) <= one.len(), "{name}: {one:?} {other:?}");
     }
 }
 
