@@ -14,7 +14,7 @@ const LEAST_AROUND: f64 = 4.0;
 const LEAST_ROWS: f64 = 2.0;
 /// Stations along the tube and points around it at which it is measured.
 const STATIONS: usize = 64;
-const AROUND: usize = 48;
+const AROUND: usize = 24;
 /// Longest side, in mm, of what people crochet by hand; outside of it the unit may be wrong.
 const LIKELY: std::ops::RangeInclusive<f64> = 8.0..=3000.0;
 
