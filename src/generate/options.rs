@@ -6,10 +6,11 @@ use crate::shape::Wishes;
 use serde::Deserialize;
 
 /// From the first to the second of these numbers of nodes parts get more and more sweeps, up to so many times more; from the third
-/// to the fourth less and less of them.
+/// to the fourth fewer again, down to this share of them.
 const SMALL: [usize; 2] = [800, 1_450];
-const LARGE: [usize; 2] = [5_500, 8_500];
+const LARGE: [usize; 2] = [4_500, 6_000];
 const LONGER: f64 = 1.43;
+const LESS: f64 = 0.4;
 
 /// How far a number has come from the first to the second of two, as a share.
 fn past(number: usize, [from, to]: [usize; 2]) -> f64 {
@@ -145,10 +146,10 @@ impl Options {
         }
     }
 
-    /// Sweeps over a part of so many nodes: what is off at one end of a larger part takes longer to spread over it, and very
-    /// large ones have no time for more. None of it in a hurry.
+    /// Sweeps over a part of so many nodes: what is off at one end of a larger part takes longer to spread over it, and
+    /// very large ones have less time for it. None of it in a hurry.
     pub(super) fn sweeps_over(&self, nodes: usize) -> u32 {
-        let (rise, fall) = (past(nodes, SMALL), past(nodes, LARGE));
+        let (rise, fall) = (past(nodes, SMALL), LESS * past(nodes, LARGE));
         let more = if self.preset == Preset::Fast { 0.0 } else { rise - fall };
         self.sweeps + (f64::from(self.sweeps) * LONGER * more) as u32
     }

@@ -19,6 +19,8 @@ const MANY: usize = 50_000;
 /// of the next, which then settle once more: what hangs over its edge is far enough away.
 const BAND: usize = 1 << 16;
 const OVERLAP: usize = 10;
+/// Of rows of more nodes only two settle at a time, for the same reason.
+const LONG: usize = 1_500;
 /// Sweeps over the whole after which a try is judged.
 const FIRST_SWEEPS: u32 = 4;
 
@@ -77,13 +79,14 @@ impl Weaver<'_> {
         if self.quick() && !self.marks.len().is_multiple_of(2) {
             return;
         }
-        let oldest = self.marks.len().saturating_sub(self.options.window as usize);
+        let newest = self.marks.last().map_or(0, |mark| mark.nodes);
+        let window = self.options.window.min(if self.sheet.len() > newest + LONG { 2 } else { u32::MAX });
+        let oldest = self.marks.len().saturating_sub(window as usize);
         let Some(&mark) = self.marks.get(oldest) else { return };
         let mark = if oldest == 0 { self.free(Mark::default()) } else { self.free(mark) };
         let effort = Effort { sweeps: self.options.window_sweeps, squareness: WINDOW_SQUARENESS };
         let ends = self.ends();
         // What lies two rows down hardly moves any more.
-        let newest = self.marks[self.marks.len().saturating_sub(1)].nodes;
         let exact = if self.quick() { usize::MAX } else { newest };
         let rows = Stretch::since(mark, &self.sheet);
         self.relaxer.relax(self.surface, &mut self.sheet, rows, exact, effort, ends);
