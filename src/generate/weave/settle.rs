@@ -16,11 +16,10 @@ const FEW_SWEEPS: u32 = 5;
 /// Parts of so many stitches have few tries.
 const MANY: usize = 50_000;
 /// Large parts settle by bands of rows, so many nodes at a time, which the processor keeps near; and each band with so many rows
-/// of the next, which then settle once more: what hangs over its edge is far enough away.
+/// of the next, which then settle once more: what hangs over its edge is far enough away. A band has many more rows than that.
 const BAND: usize = 1 << 16;
 const OVERLAP: usize = 10;
-/// Of rows of more nodes only two settle at a time, for the same reason.
-const LONG: usize = 1_500;
+const ROWS: usize = 8 * OVERLAP;
 /// Sweeps over the whole after which a try is judged.
 const FIRST_SWEEPS: u32 = 4;
 
@@ -79,14 +78,13 @@ impl Weaver<'_> {
         if self.quick() && !self.marks.len().is_multiple_of(2) {
             return;
         }
-        let newest = self.marks.last().map_or(0, |mark| mark.nodes);
-        let window = self.options.window.min(if self.sheet.len() > newest + LONG { 2 } else { u32::MAX });
-        let oldest = self.marks.len().saturating_sub(window as usize);
+        let oldest = self.marks.len().saturating_sub(self.options.window as usize);
         let Some(&mark) = self.marks.get(oldest) else { return };
         let mark = if oldest == 0 { self.free(Mark::default()) } else { self.free(mark) };
         let effort = Effort { sweeps: self.options.window_sweeps, squareness: WINDOW_SQUARENESS };
         let ends = self.ends();
         // What lies two rows down hardly moves any more.
+        let newest = self.marks.last().map_or(0, |mark| mark.nodes);
         let exact = if self.quick() { usize::MAX } else { newest };
         let rows = Stretch::since(mark, &self.sheet);
         self.relaxer.relax(self.surface, &mut self.sheet, rows, exact, effort, ends);
@@ -103,9 +101,9 @@ impl Weaver<'_> {
         let ends = Ends { level, ..self.ends() };
         let exact = if self.quick() { 0 } else { usize::MAX };
         let end = Mark::of(&self.sheet);
-        let mut from = self.free(Mark::default());
+        let (mut from, mut next) = (self.free(Mark::default()), 0);
         loop {
-            let next = self.marks.partition_point(|mark| mark.nodes < from.nodes + BAND);
+            next = self.marks.partition_point(|mark| mark.nodes < from.nodes + BAND).max(next + ROWS);
             let until = self.marks.get(next + OVERLAP).copied().unwrap_or(end);
             let band = Stretch { from, until };
             self.relaxer.relax(self.surface, &mut self.sheet, band, exact, effort, ends);
