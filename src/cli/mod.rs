@@ -97,6 +97,8 @@ pub(crate) fn main() -> ExitCode {
             env!("CARGO_PKG_VERSION")
         );
     }));
+    // The main thread works, too. Memory that it gives back stays at hand, other threads return it to the system at once.
+    let _ = rayon::ThreadPoolBuilder::new().use_current_thread().build_global();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
