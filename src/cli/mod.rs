@@ -97,8 +97,6 @@ pub(crate) fn main() -> ExitCode {
             env!("CARGO_PKG_VERSION")
         );
     }));
-    // The main thread works, too. Memory that it gives back stays at hand, other threads return it to the system at once.
-    let _ = rayon::ThreadPoolBuilder::new().use_current_thread().build_global();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
@@ -106,6 +104,8 @@ pub(crate) fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(Status::Usage as u8));
         }
     };
+    // The main thread works, too. Memory that it gives back stays at hand, other threads return it to the system at once.
+    let _ = rayon::ThreadPoolBuilder::new().use_current_thread().build_global();
     let report = report::Report::new(&cli.global);
     let outcome = match &cli.command {
         Command::Build(arguments) => build::run(arguments, report),

@@ -49,7 +49,7 @@ pub struct Options {
     pub window: u32,
     /// Sweeps over the window after each row.
     pub window_sweeps: u32,
-    /// Sweeps over the whole part at the end; parts from 800 to 8,500 stitches get up to 2.4 times as many.
+    /// Sweeps over the whole part at the end; parts over 800 stitches get up to 2.4 times as many.
     pub sweeps: u32,
     /// Weight of a square tile against exact lengths in the final sweeps: higher trades length error for skew.
     pub squareness: f64,
