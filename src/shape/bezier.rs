@@ -98,17 +98,30 @@ fn bernstein2(c: &[DVec3; 3], t: f64) -> DVec3 {
 }
 
 /// Five-point Gauss-Legendre quadrature of `f` over [`a`, `b`]: exact for polynomials up to degree 9.
-pub fn integrate(a: f64, b: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
-    const NODES: [(f64, f64); 3] = [
-        (0.0, 0.568_888_888_888_888_9),
-        (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
-        (0.906_179_845_938_664, 0.236_926_885_056_189_08),
-    ];
+pub fn integrate(a: f64, b: f64, f: impl FnMut(f64) -> f64) -> f64 {
+    weigh(a, b, nodes(a, b).map(f))
+}
+
+/// Nodes of the quadrature over [0, 1] by their distances from the middle in halves, and their weights.
+const NODES: [(f64, f64); 3] = [
+    (0.0, 0.568_888_888_888_888_9),
+    (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+    (0.906_179_845_938_664, 0.236_926_885_056_189_08),
+];
+
+/// Where [`integrate`] looks at a function.
+#[inline]
+pub(super) fn nodes(a: f64, b: f64) -> [f64; 5] {
     let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
-    let [(_, center), (inner, inner_weight), (outer, outer_weight)] = NODES;
-    half * (center * f(middle)
-        + inner_weight * (f(middle - half * inner) + f(middle + half * inner))
-        + outer_weight * (f(middle - half * outer) + f(middle + half * outer)))
+    let [_, (inner, _), (outer, _)] = NODES;
+    [middle, middle - half * inner, middle + half * inner, middle - half * outer, middle + half * outer]
+}
+
+/// The integral from the values at the [`nodes`].
+#[inline]
+pub(super) fn weigh(a: f64, b: f64, [middle, low, high, lowest, highest]: [f64; 5]) -> f64 {
+    let [(_, center), (_, inner), (_, outer)] = NODES;
+    0.5 * (b - a) * (center * middle + inner * (low + high) + outer * (lowest + highest))
 }
 
 /// A place on a [`Chain`]: position, unit tangent and their rates of change by the chain's parameter.

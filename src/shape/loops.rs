@@ -1,9 +1,10 @@
 //! Closed loops of points: made smooth, spread evenly by arc length, turned to each other, and stacked.
 
+use super::phase::Samples;
 use super::spec::{Fault, Profile, Section};
 use super::spline::Spline;
 use super::{Jet, smooth};
-use crate::math::{TAU, atan2, sin_cos};
+use crate::math::{TAU, sin_cos};
 use glam::{DVec2, DVec3};
 
 /// Points a loop may have.
@@ -56,11 +57,11 @@ impl ClosedLine {
     /// The line through even samples, with derivatives of fourth order from them.
     fn from_samples(samples: &[DVec3]) -> Self {
         let count = samples.len();
-        let at = |i: usize| samples[i % count];
+        let turn = |i: usize| if i < count { i } else { i - count };
+        let at = |i: usize| samples[turn(i)];
         let knots = (0..count)
             .map(|i| {
-                let slope =
-                    (8.0 * (at(i + 1) - at(i + count - 1)) - (at(i + 2) - at(i + 2 * count - 2))) / 12.0;
+                let slope = (8.0 * (at(i + 1) - at(i + count - 1)) - (at(i + 2) - at(i + count - 2))) / 12.0;
                 [samples[i], slope]
             })
             .collect();
@@ -87,6 +88,21 @@ impl ClosedLine {
         (a + t * (da + t * (square + t * cube)), (da + t * (2.0 * square + t * 3.0 * cube)) * count as f64)
     }
 
+    /// The point alone.
+    #[inline]
+    pub(super) fn point(&self, v: f64) -> DVec3 {
+        self.point_at(Knot::at(v, self.knots.len()))
+    }
+
+    #[inline]
+    fn point_at(&self, Knot { index, t }: Knot) -> DVec3 {
+        let [a, da] = self.knots[index];
+        let [b, db] = self.knots[if index + 1 == self.knots.len() { 0 } else { index + 1 }];
+        let rise = b - a;
+        let (square, cube) = (3.0 * rise - 2.0 * da - db, da + db - 2.0 * rise);
+        a + t * (da + t * (square + t * cube))
+    }
+
     /// Mean of the points.
     pub fn center(&self) -> DVec3 {
         self.knots.iter().map(|knot| knot[0]).sum::<DVec3>() / self.knots.len() as f64
@@ -95,25 +111,21 @@ impl ClosedLine {
     /// How often the line turns around as seen along z: 1 counterclockwise, -1 clockwise, anything else for a
     /// line that crosses itself.
     pub fn turns(&self) -> i32 {
-        let mut angle = 0.0;
-        let count = self.knots.len();
-        let slopes: Vec<DVec2> = (0..count)
-            .map(|i| (self.knots[(i + 1) % count][0] - self.knots[i][0]).truncate())
+        let places = || self.knots.iter().map(|knot| knot[0]);
+        let ends = places().zip(places().cycle().skip(1));
+        let slopes: Vec<DVec2> = ends
+            .map(|(place, next)| (next - place).truncate())
             .filter(|slope| slope.length_squared() > 0.0)
             .collect();
-        for (i, slope) in slopes.iter().enumerate() {
-            let next = slopes[(i + 1) % slopes.len()];
-            angle += atan2(slope.perp_dot(next), slope.dot(next));
-        }
-        (angle / TAU).round() as i32
+        // As often as the slope turns past the x axis.
+        slopes.iter().zip(slopes.iter().cycle().skip(1)).map(|(slope, next)| passed(*slope, *next)).sum()
     }
 
     /// Area enclosed as seen along z, positive counterclockwise.
     fn area(&self) -> f64 {
-        let count = self.knots.len();
         let center = self.center();
-        let at = |i: usize| (self.knots[i % count][0] - center).truncate();
-        (0..count).map(|i| 0.5 * at(i).perp_dot(at(i + 1))).sum()
+        let arms = || self.knots.iter().map(|knot| (knot[0] - center).truncate());
+        arms().zip(arms().cycle().skip(1)).map(|(arm, next)| 0.5 * arm.perp_dot(next)).sum()
     }
 
     fn reverse(&mut self) {
@@ -138,48 +150,20 @@ impl ClosedLine {
 
     /// The phase that turns this line least against `other`, both seen from their centers.
     pub fn phase_against(&self, other: &Self) -> f64 {
-        const SAMPLES: usize = 64;
-        const LANES: usize = 4;
-        // Three rows of coordinates, twice around: all shifts of one point are told in one go.
-        let sample = |line: &Self| -> [[f64; 2 * SAMPLES]; 3] {
-            let center = line.center();
-            let mut rows = [[0.0; 2 * SAMPLES]; 3];
-            for k in 0..SAMPLES {
-                let arm = line.eval(k as f64 / SAMPLES as f64).0 - center;
-                for (row, value) in rows.iter_mut().zip(arm.to_array()) {
-                    (row[k], row[k + SAMPLES]) = (value, value);
-                }
-            }
-            rows
-        };
-        let ([a, b, c], [x, y, z]) = (sample(other), sample(self));
-        let mut costs = [0.0; SAMPLES];
-        for (chunk, costs) in costs.chunks_exact_mut(LANES).enumerate() {
-            let mut sums = [0.0; LANES];
-            for i in 0..SAMPLES {
-                let from = i + chunk * LANES;
-                let lane = |row: &[f64], at: f64| -> [f64; LANES] {
-                    std::array::from_fn(|k| (row[from + k] - at) * (row[from + k] - at))
-                };
-                let (x, y, z) = (lane(&x, a[i]), lane(&y, b[i]), lane(&z, c[i]));
-                sums = std::array::from_fn(|k| sums[k] + (x[k] + y[k] + z[k]));
-            }
-            costs.copy_from_slice(&sums);
-        }
-        let mut best = 0;
-        for (i, cost) in costs.iter().enumerate() {
-            // A tie goes to the smaller shift, so that equal loops stay as they are.
-            if *cost < costs[best] * (1.0 - 1e-9) {
-                best = i;
-            }
-        }
-        let (before, after) =
-            (costs[(best + costs.len() - 1) % costs.len()], costs[(best + 1) % costs.len()]);
-        let bow = before + after - 2.0 * costs[best];
-        let shift = if bow > 0.0 { (0.5 * (before - after) / bow).clamp(-0.5, 0.5) } else { 0.0 };
-        // Equal neighbors differ by rounding only: no shift then.
-        let shift = if shift.abs() < 1e-9 { 0.0 } else { shift };
-        (best as f64 + shift) / SAMPLES as f64
+        Samples::of(self).phase_against(&Samples::of(other))
+    }
+}
+
+/// Whether the least turn from one slope to the next passes the direction of x: 1 counterclockwise, -1 clockwise, 0 if not.
+fn passed(slope: DVec2, next: DVec2) -> i32 {
+    let cross = slope.perp_dot(next);
+    // Along one line it is the sides that tell, and what turns back turns counterclockwise.
+    let left =
+        if cross == 0.0 { slope.dot(next) < 0.0 || (slope.x > 0.0) == (slope.y < 0.0) } else { cross > 0.0 };
+    match (slope.y < 0.0, next.y < 0.0) {
+        (true, false) if left => 1,
+        (false, true) if !left => -1,
+        _ => 0,
     }
 }
 
@@ -234,7 +218,7 @@ impl LoopStack {
         // A few knots to each point that is given.
         let count = if sections.len() > 64 { 64 } else { (4 * most.min(64)).clamp(96, 256) };
         let mut lines: Vec<ClosedLine> = Vec::with_capacity(sections.len());
-        let mut last: Option<usize> = None;
+        let mut last: Option<Samples> = None;
         for (section, it) in sections.iter().enumerate() {
             if let (true, Profile::Ellipse { offset, .. }) = (points[section], &it.profile) {
                 lines.push(ClosedLine::constant(offset.extend(0.0), count));
@@ -255,21 +239,24 @@ impl LoopStack {
                 }
             };
             let mut line = line.ok_or(fault)?;
-            if line.area() > 0.0 {
+            let area = line.area();
+            if area > 0.0 {
                 line.reverse();
             }
             let girth: f64 = line.knots.iter().map(|knot| knot[1].length()).sum();
-            if line.turns() != -1 || line.area().abs() < 1e-6 * girth * girth {
+            if line.turns() != -1 || area.abs() < 1e-6 * girth * girth {
                 return Err(fault);
             }
-            let phase = match last {
-                Some(last) => line.phase_against(&lines[last]),
+            let mut samples = Samples::of(&line);
+            let phase = match &last {
+                Some(last) => samples.phase_against(last),
                 None => phase_of_x(&line),
             };
             if phase != 0.0 {
                 line = line.shifted(phase);
+                samples = Samples::of(&line);
             }
-            last = Some(lines.len());
+            last = Some(samples);
             lines.push(line);
         }
         let places: Vec<f64> = sections.iter().map(|it| it.at).collect();
@@ -309,6 +296,38 @@ struct Between<'s> {
     inverse: f64,
 }
 
+impl Between<'_> {
+    /// What lies between two of a kind, with their slopes where the way is smooth.
+    #[inline]
+    fn point(&self, a: DVec3, b: DVec3, slopes: Option<[DVec3; 2]>) -> DVec3 {
+        let (t, width) = (self.t, 1.0 / self.inverse);
+        match slopes {
+            None => a + (b - a) * t,
+            Some([before, after]) => {
+                let (t2, t3) = (t * t, t * t * t);
+                let blend = [t - 2.0 * t2 + t3, 3.0 * t2 - 2.0 * t3, t3 - t2];
+                a + (b - a) * blend[1] + (before * blend[0] + after * blend[2]) * width
+            }
+        }
+    }
+
+    /// The same, and how it changes.
+    #[inline]
+    fn mix(&self, a: DVec3, b: DVec3, slopes: Option<[DVec3; 2]>) -> (DVec3, DVec3) {
+        let (t, inverse) = (self.t, self.inverse);
+        let slope = match slopes {
+            None => (b - a) * inverse,
+            Some([before, after]) => {
+                let t2 = t * t;
+                (b - a) * ((6.0 * t - 6.0 * t2) * inverse)
+                    + before * (1.0 - 4.0 * t + 3.0 * t2)
+                    + after * (3.0 * t2 - 2.0 * t)
+            }
+        };
+        (self.point(a, b, slopes), slope)
+    }
+}
+
 /// Center and size of a line, and how they change.
 struct Frame {
     center: [DVec3; 2],
@@ -317,6 +336,45 @@ struct Frame {
 }
 
 impl Cut<'_> {
+    /// The derivative by the curve parameter at a knot, as [`Cut::eval`] has it there.
+    fn drift(&self, knot: usize) -> DVec3 {
+        let at = |line: &ClosedLine| line.knots[knot][0];
+        let a = at(self.line);
+        let (point, slope) = match &self.between {
+            None => (a, DVec3::ZERO),
+            Some(way) => way.mix(a, at(way.next), way.slopes.map(|slopes| slopes.map(at))),
+        };
+        match &self.frame {
+            None => slope,
+            Some(Frame { center: [_, drift], size, growth }) => *drift + point * *growth + slope * *size,
+        }
+    }
+
+    /// Mean square of the derivative by the curve parameter, from four places.
+    pub(super) fn pace_squared(&self) -> f64 {
+        let count = self.line.knots.len();
+        (0..4).map(|k| self.drift(count * k / 4).length_squared()).sum::<f64>() / 4.0
+    }
+
+    /// The point alone.
+    #[inline]
+    pub(super) fn point(&self, v: f64) -> DVec3 {
+        let knot = Knot::at(v, self.line.knots.len());
+        let a = self.line.point_at(knot);
+        let point = match &self.between {
+            None => a,
+            Some(way) => way.point(
+                a,
+                way.next.point_at(knot),
+                way.slopes.map(|slopes| slopes.map(|line| line.point_at(knot))),
+            ),
+        };
+        match &self.frame {
+            None => point,
+            Some(Frame { center: [center, _], size, .. }) => *center + point * *size,
+        }
+    }
+
     /// Point and derivatives, `du` by the curve parameter.
     #[inline]
     pub(super) fn eval(&self, v: f64) -> Jet {
@@ -325,26 +383,11 @@ impl Cut<'_> {
         let (a, av) = self.line.eval_at(knot);
         let line = match &self.between {
             None => Jet { point: a, du: DVec3::ZERO, dv: av },
-            Some(Between { next, slopes, t, inverse }) => {
-                let (t, inverse) = (*t, *inverse);
-                let (b, bv) = next.eval_at(knot);
-                match slopes {
-                    None => Jet { point: a + (b - a) * t, du: (b - a) * inverse, dv: av + (bv - av) * t },
-                    Some([before, after]) => {
-                        let (ma, mav) = before.eval_at(knot);
-                        let (mb, mbv) = after.eval_at(knot);
-                        let width = 1.0 / inverse;
-                        let (s, s2, s3) = (t, t * t, t * t * t);
-                        let blend = [s - 2.0 * s2 + s3, 3.0 * s2 - 2.0 * s3, s3 - s2];
-                        let mix = |a: DVec3, ma: DVec3, b: DVec3, mb: DVec3| {
-                            a + (b - a) * blend[1] + (ma * blend[0] + mb * blend[2]) * width
-                        };
-                        let slope = (b - a) * ((6.0 * s - 6.0 * s2) * inverse)
-                            + ma * (1.0 - 4.0 * s + 3.0 * s2)
-                            + mb * (3.0 * s2 - 2.0 * s);
-                        Jet { point: mix(a, ma, b, mb), du: slope, dv: mix(av, mav, bv, mbv) }
-                    }
-                }
+            Some(way) => {
+                let (b, bv) = way.next.eval_at(knot);
+                let slopes = way.slopes.map(|slopes| slopes.map(|line| line.eval_at(knot)));
+                let (point, du) = way.mix(a, b, slopes.map(|slopes| slopes.map(|slope| slope.0)));
+                Jet { point, du, dv: way.point(av, bv, slopes.map(|slopes| slopes.map(|slope| slope.1))) }
             }
         };
         match &self.frame {
@@ -387,15 +430,19 @@ impl Smooth {
         let count = lines[0].knots.len();
         let mut samples = vec![vec![DVec3::ZERO; count]; lines.len()];
         let mut slopes = smooth::Slopes::new(places);
-        let mut values = vec![0.0; lines.len()];
-        for knot in 0..count {
-            for axis in 0..3 {
-                for (value, line) in values.iter_mut().zip(lines.iter()) {
-                    *value = line.knots[knot][0][axis];
-                }
-                for (row, slope) in samples.iter_mut().zip(slopes.through(&values, false)) {
-                    row[knot][axis] = *slope;
-                }
+        let mut values = vec![0.0; count * lines.len()];
+        for axis in 0..3 {
+            let all = lines.iter().flat_map(|line| &line.knots);
+            for (value, knot) in values.iter_mut().zip(all) {
+                *value = knot[0][axis];
+            }
+            // Loops in planes do not change along the curve.
+            if values.iter().all(|value| *value == 0.0) {
+                continue;
+            }
+            let slopes = slopes.through(&values, count);
+            for (sample, slope) in samples.iter_mut().flatten().zip(slopes) {
+                sample[axis] = *slope;
             }
         }
         if let (Some(first), true) = (samples.first_mut(), places[0] > 0.0) {
@@ -439,4 +486,30 @@ fn phase_of_x(line: &ClosedLine) -> f64 {
         }
     }
     0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_turns_as_often_as_its_slope() {
+        for (around, bow, turns) in [(1, 0.0, 1), (-1, 0.0, -1), (2, 0.0, 2), (-3, 0.0, -3), (0, 1.0, 0)] {
+            for k in 0..40 {
+                // Begun anywhere: slopes along x and y, too.
+                let begin = f64::from(k) / 40.0;
+                let at = |i: u32| {
+                    let v = f64::from(i) / 96.0 + begin;
+                    let (sin, cos) = sin_cos(TAU * v * f64::from(if around == 0 { 1 } else { around }));
+                    let eight = sin_cos(2.0 * TAU * v).0;
+                    DVec3::new(cos * 20.0, sin * 20.0 * (1.0 - bow) + eight * bow * 9.0, 0.0)
+                };
+                let line = ClosedLine::through(&(0..96).map(at).collect::<Vec<_>>(), 112).unwrap();
+                assert_eq!(line.turns(), turns, "{around} {begin}");
+            }
+        }
+        let square = [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+        let flat = ClosedLine { knots: square.map(|corner| [corner, DVec3::ZERO]).to_vec() };
+        assert_eq!(flat.turns(), -1);
+    }
 }

@@ -12,6 +12,7 @@ pub mod measure;
 mod meridian;
 pub mod mesh;
 mod mirror;
+mod phase;
 mod profile;
 mod revolve;
 pub(crate) mod ring;

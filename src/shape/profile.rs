@@ -165,10 +165,7 @@ impl Stack {
                 let [x, y] = [slope(2, false), slope(3, false)];
                 0.5 * (a * a + b * b) + x * x + y * y
             }
-            Kind::Loops(stack) => {
-                let cut = stack.at(w);
-                (0..4).map(|k| cut.eval(f64::from(k) / 4.0).du.length_squared()).sum::<f64>() / 4.0
-            }
+            Kind::Loops(stack) => stack.at(w).pace_squared(),
         }
     }
 
@@ -184,7 +181,7 @@ impl Stack {
             Kind::Loops(stack) => {
                 let cut = stack.at(w);
                 (0..64)
-                    .map(|k| cut.eval(f64::from(k) / 64.0).point.truncate().dot(toward))
+                    .map(|k| cut.point(f64::from(k) / 64.0).truncate().dot(toward))
                     .fold(f64::NEG_INFINITY, f64::max)
             }
         }
@@ -245,7 +242,7 @@ impl Line<'_> {
                 let (sin, cos) = sin_cos_turns(-v);
                 DVec3::new(x + a * cos, y + b * sin, 0.0)
             }
-            Self::Loop(cut) => cut.eval(v).point,
+            Self::Loop(cut) => cut.point(v),
         }
     }
 }

@@ -13,7 +13,10 @@ pub(super) struct Cubic {
 pub(super) fn cubics(places: &[f64], values: &[f64], smooth: bool, positive: bool) -> Vec<Cubic> {
     let mut slopes = vec![0.0; places.len()];
     if smooth {
-        slopes = Slopes::new(places).through(values, positive).to_vec();
+        slopes = Slopes::new(places).through(values, 1).to_vec();
+        if positive {
+            keep_above(places, values, &mut slopes);
+        }
     }
     let (Some(&first), Some(&last)) = (places.first(), places.last()) else { return Vec::new() };
     let (low, high) = (values[0], values[values.len() - 1]);
@@ -62,7 +65,7 @@ fn hermite(from: f64, rise: f64, start: f64, end: f64) -> [f64; 4] {
 #[derive(Debug)]
 pub(super) struct Slopes<'p> {
     places: &'p [f64],
-    /// Of the values last seen: first divided differences, second ones around each place, and slopes.
+    /// Of the values last seen: first divided differences, second ones around the inner places, and slopes.
     secants: Vec<f64>,
     seconds: Vec<f64>,
     result: Vec<f64>,
@@ -73,79 +76,92 @@ impl<'p> Slopes<'p> {
         Self { places, secants: Vec::new(), seconds: Vec::new(), result: Vec::new() }
     }
 
-    /// The slopes at the places, as many as there are values; a `positive` quantity is the square of a size.
-    pub(super) fn through(&mut self, values: &[f64], positive: bool) -> &[f64] {
+    /// The slopes at the places of so many curves at once: rows of values in, a row for each place, and rows of slopes out.
+    pub(super) fn through(&mut self, values: &[f64], curves: usize) -> &[f64] {
         let Self { places, secants, seconds, result: slopes } = self;
-        let count = places.len().min(values.len());
+        let count = places.len().min(values.len() / curves.max(1));
         slopes.clear();
-        slopes.resize(count, 0.0);
+        slopes.resize(count * curves, 0.0);
         if count < 2 {
             return slopes;
         }
-        secants.clear();
-        secants.extend((1..count).map(|i| (values[i] - values[i - 1]) / (places[i] - places[i - 1])));
+        let row = |i: usize| i * curves..(i + 1) * curves;
+        divide(secants, values, curves, |i| places[i + 1] - places[i]);
         if count == 2 {
-            slopes.fill(secants[0]);
-            // The square of a straight line, where it is a square and not of a point.
-            if positive && values[0] > 0.0 && values[1] > 0.0 {
-                let roots = [values[0].sqrt(), values[1].sqrt()];
-                let slope = 2.0 * (roots[1] - roots[0]) / (places[1] - places[0]);
-                slopes.copy_from_slice(&roots.map(|root| root * slope));
-            }
+            slopes[row(0)].copy_from_slice(secants);
+            slopes[row(1)].copy_from_slice(secants);
             return slopes;
         }
-        // Beyond the ends the nearest one.
-        let second = |i: usize| {
-            let i = i.clamp(1, count - 2);
-            (secants[i] - secants[i - 1]) / (places[i + 1] - places[i - 1])
-        };
-        seconds.clear();
-        seconds.extend((0..count).map(second));
-        let between = |i: usize| minmod(seconds[i], seconds[i + 1]);
+        divide(seconds, secants, curves, |i| places[i + 2] - places[i]);
+        // Around place i, beyond the ends the nearest one.
+        let second = |i: usize| &seconds[row(i.clamp(1, count - 2) - 1)];
         for i in 1..count - 1 {
-            let left = secants[i - 1] + between(i - 1) * (places[i] - places[i - 1]);
-            let right = secants[i] + between(i) * (places[i] - places[i + 1]);
-            let limit = 3.0 * minmod(secants[i - 1], secants[i]).abs();
-            let wide = minmod(left, right);
-            let size = (0.5 * (left + right)).abs().min(limit.max(1.5 * wide.abs()));
-            slopes[i] = if wide == 0.0 { 0.0 } else { size.copysign(wide) };
+            let (back, forth) = (places[i] - places[i - 1], places[i] - places[i + 1]);
+            let (before, after) = (&secants[row(i - 1)], &secants[row(i)]);
+            let (low, here, high) = (second(i - 1), second(i), second(i + 1));
             // Nothing beyond the outermost values says that they belong to a smooth extremum.
-            if i == 1 {
-                slopes[i] = minmod(slopes[i], 3.0 * secants[0]);
-            }
-            if i == count - 2 {
-                slopes[i] = minmod(slopes[i], 3.0 * secants[i]);
-            }
-        }
-        let end = |secant: f64, slope: f64| minmod(slope, 3.0 * secant);
-        slopes[0] = end(secants[0], secants[0] - seconds[1] * (places[1] - places[0]));
-        let last = secants[count - 2];
-        slopes[count - 1] = end(last, last + seconds[count - 2] * (places[count - 1] - places[count - 2]));
-        if positive {
-            for i in 0..count - 1 {
-                let (width, floor) = (places[i + 1] - places[i], 0.5 * values[i].min(values[i + 1]));
-                let [a, b, c, d] =
-                    hermite(values[i], values[i + 1] - values[i], slopes[i] * width, slopes[i + 1] * width);
-                let low = (1..32).map(|k| f64::from(k) / 32.0).any(|t| a + t * (b + t * (c + t * d)) < floor);
-                if low {
-                    slopes[i] = minmod(slopes[i], 3.0 * secants[i]);
-                    slopes[i + 1] = minmod(slopes[i + 1], 3.0 * secants[i]);
-                }
+            let (first, last) = (i == 1, i == count - 2);
+            for (k, slope) in slopes[row(i)].iter_mut().enumerate() {
+                let left = before[k] + minmod(low[k], here[k]) * back;
+                let right = after[k] + minmod(here[k], high[k]) * forth;
+                let limit = 3.0 * minmod(before[k], after[k]).abs();
+                let wide = minmod(left, right);
+                let size = (0.5 * (left + right)).abs().min(limit.max(1.5 * wide.abs()));
+                let inner = if wide == 0.0 { 0.0 } else { size.copysign(wide) };
+                let inner = if first { minmod(inner, 3.0 * before[k]) } else { inner };
+                *slope = if last { minmod(inner, 3.0 * after[k]) } else { inner };
             }
         }
+        let mut end = |at: usize, step: f64| {
+            let (secants, seconds) = (&secants[row(at.min(count - 2))], second(at));
+            for (k, slope) in slopes[row(at)].iter_mut().enumerate() {
+                *slope = minmod(secants[k] + seconds[k] * step, 3.0 * secants[k]);
+            }
+        };
+        end(0, places[0] - places[1]);
+        end(count - 1, places[count - 1] - places[count - 2]);
         slopes
     }
 }
 
-/// The smaller of two numbers of one sign, otherwise 0.
-fn minmod(a: f64, b: f64) -> f64 {
-    if a * b <= 0.0 {
-        0.0
-    } else if a.abs() < b.abs() {
-        a
-    } else {
-        b
+/// Differences of neighboring rows of values, divided by a number for each two rows.
+fn divide(out: &mut Vec<f64>, values: &[f64], width: usize, by: impl Fn(usize) -> f64) {
+    out.clear();
+    for (i, (row, next)) in values.chunks_exact(width).zip(values.chunks_exact(width).skip(1)).enumerate() {
+        let by = by(i);
+        out.extend(row.iter().zip(next).map(|(value, next)| (next - value) / by));
     }
+}
+
+/// Slopes of squares of sizes, eased where these would come close to zero between values that do not; between two of them that of
+/// the square of a straight line, where it is a square and not of a point.
+fn keep_above(places: &[f64], values: &[f64], slopes: &mut [f64]) {
+    if let (&[start, end], &[low, high]) = (places, values) {
+        if low > 0.0 && high > 0.0 {
+            let roots = [low.sqrt(), high.sqrt()];
+            let slope = 2.0 * (roots[1] - roots[0]) / (end - start);
+            slopes.copy_from_slice(&roots.map(|root| root * slope));
+        }
+        return;
+    }
+    for i in 0..values.len().saturating_sub(1) {
+        let (width, rise) = (places[i + 1] - places[i], values[i + 1] - values[i]);
+        let floor = 0.5 * values[i].min(values[i + 1]);
+        let [a, b, c, d] = hermite(values[i], rise, slopes[i] * width, slopes[i + 1] * width);
+        let low = (1..32).map(|k| f64::from(k) / 32.0).any(|t| a + t * (b + t * (c + t * d)) < floor);
+        if low {
+            let secant = rise / width;
+            slopes[i] = minmod(slopes[i], 3.0 * secant);
+            slopes[i + 1] = minmod(slopes[i + 1], 3.0 * secant);
+        }
+    }
+}
+
+/// The smaller of two numbers of one sign, otherwise 0.
+#[inline]
+fn minmod(a: f64, b: f64) -> f64 {
+    let least = if a.abs() < b.abs() { a } else { b };
+    if a * b <= 0.0 { 0.0 } else { least }
 }
 
 #[cfg(test)]
@@ -198,6 +214,23 @@ mod tests {
             let x = f64::from(k) / 100.0;
             assert!((value(&curve, x) - x * (1.0 - x)).abs() < 1e-12, "{x}");
             assert!((value(&cone, x) - (2.0 + 7.0 * x) * (2.0 + 7.0 * x)).abs() < 1e-12, "{x}");
+        }
+    }
+
+    #[test]
+    fn curves_side_by_side_are_as_each_by_itself() {
+        let places = [0.0, 0.1, 0.35, 0.5, 0.9, 1.0];
+        for count in 1..=places.len() {
+            let places = &places[..count];
+            let value = |place: usize, curve: usize| ((7 * place * place + 5 * curve) % 11) as f64 - 4.0;
+            let rows: Vec<f64> =
+                (0..count).flat_map(|place| (0..9).map(move |curve| value(place, curve))).collect();
+            let all = Slopes::new(places).through(&rows, 9).to_vec();
+            for curve in 0..9 {
+                let values: Vec<f64> = (0..count).map(|place| value(place, curve)).collect();
+                let own: Vec<f64> = all.iter().skip(curve).step_by(9).copied().collect();
+                assert_eq!(Slopes::new(places).through(&values, 1), own, "{values:?}");
+            }
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The smooth closed curve through points, and places on it by arc length.
 
+use super::bezier;
 use glam::DVec3;
 
 /// A periodic cubic spline over chord length, and its arc length at four places a span.
@@ -16,18 +17,19 @@ impl Spline {
     /// Through three points or more, no two neighbors of them alike.
     pub(super) fn new(points: &[DVec3]) -> Self {
         let count = points.len();
-        let chords: Vec<f64> = (0..count).map(|i| points[i].distance(points[(i + 1) % count])).collect();
-        let secant = |i: usize| (points[(i + 1) % count] - points[i]) / chords[i];
+        let next = |i: usize| if i + 1 == count { 0 } else { i + 1 };
+        let before = |i: usize| if i == 0 { count - 1 } else { i - 1 };
+        let chords: Vec<f64> = (0..count).map(|i| points[i].distance(points[next(i)])).collect();
+        let secants: Vec<DVec3> = (0..count).map(|i| (points[next(i)] - points[i]) / chords[i]).collect();
         // Row i: chord_i m_(i-1) + 2 (chord_(i-1) + chord_i) m_i + chord_(i-1) m_(i+1) = right hand side.
-        let before = |i: usize| (i + count - 1) % count;
         let diagonal: Vec<f64> = (0..count).map(|i| 2.0 * (chords[before(i)] + chords[i])).collect();
         let right: Vec<DVec3> = (0..count)
-            .map(|i| 3.0 * (chords[i] * secant(before(i)) + chords[before(i)] * secant(i)))
+            .map(|i| 3.0 * (chords[i] * secants[before(i)] + chords[before(i)] * secants[i]))
             .collect();
         let slopes =
             cyclic(&chords, &diagonal, &(0..count).map(|i| chords[before(i)]).collect::<Vec<_>>(), &right);
         let cubic = |i: usize| {
-            let next = (i + 1) % count;
+            let next = next(i);
             let (a, da, db) = (points[i], slopes[i] * chords[i], slopes[next] * chords[i]);
             let rise = points[next] - a;
             [a, da, 3.0 * rise - 2.0 * da - db, da + db - 2.0 * rise]
@@ -36,10 +38,12 @@ impl Spline {
         spline.lengths.reserve(count * PARTS + 1);
         spline.lengths.push(0.0);
         let mut total = 0.0;
-        for piece in 0..count * PARTS {
-            let from = (piece % PARTS) as f64 / PARTS as f64;
-            total += spline.length(piece / PARTS, from, from + 1.0 / PARTS as f64);
-            spline.lengths.push(total);
+        for span in 0..count {
+            for part in 0..PARTS {
+                let from = part as f64 / PARTS as f64;
+                total += spline.length(span, from, from + 1.0 / PARTS as f64);
+                spline.lengths.push(total);
+            }
         }
         spline
     }
@@ -50,8 +54,22 @@ impl Spline {
         line + t * (2.0 * square + t * 3.0 * cube)
     }
 
+    /// Its length at several parameters, coordinate by coordinate: several at a time.
+    #[inline]
+    fn speeds<const N: usize>(&self, span: usize, t: [f64; N]) -> [f64; N] {
+        let [_, line, square, cube] = self.spans[span];
+        let [mut x, mut y, mut z] = [[0.0; N]; 3];
+        for k in 0..N {
+            let three = t[k] * 3.0;
+            x[k] = line.x + t[k] * (2.0 * square.x + three * cube.x);
+            y[k] = line.y + t[k] * (2.0 * square.y + three * cube.y);
+            z[k] = line.z + t[k] * (2.0 * square.z + three * cube.z);
+        }
+        std::array::from_fn(|k| (x[k] * x[k] + y[k] * y[k] + z[k] * z[k]).sqrt())
+    }
+
     fn length(&self, span: usize, from: f64, to: f64) -> f64 {
-        super::bezier::integrate(from, to, |t| self.slope(span, t).length())
+        bezier::weigh(from, to, self.speeds(span, bezier::nodes(from, to)))
     }
 
     /// Point and unit direction at an arc length that lies in the given piece.
@@ -60,8 +78,9 @@ impl Spline {
         let size = self.lengths[piece + 1] - self.lengths[piece];
         let mut t = from + (target - self.lengths[piece]) / size.max(f64::MIN_POSITIVE) / PARTS as f64;
         for _ in 0..2 {
-            let miss = self.lengths[piece] + self.length(span, from, t) - target;
-            let speed = self.slope(span, t).length();
+            let [a, b, c, d, e] = bezier::nodes(from, t);
+            let [a, b, c, d, e, speed] = self.speeds(span, [a, b, c, d, e, t]);
+            let miss = self.lengths[piece] + bezier::weigh(from, t, [a, b, c, d, e]) - target;
             if speed > 0.0 {
                 t = (t - miss / speed).clamp(from, from + 1.0 / PARTS as f64);
             }

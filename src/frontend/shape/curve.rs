@@ -68,11 +68,12 @@ pub(super) fn point(walk: &mut Walk<'_>, value: &Value<'_>, what: &str, least: u
         walk.fault(Code::PointForm, span, message, &format!("expected {EXPECTED}"), "");
         return None;
     }
-    let read: Vec<Option<f64>> =
-        entries.iter().map(|entry| walk.length(entry, what).map(|number| number.value)).collect();
-    let numbers: Vec<f64> = read.into_iter().collect::<Option<_>>()?;
-    let at = |index: usize| numbers.get(index).copied().unwrap_or_default();
-    Some(DVec3::new(at(0), at(1), at(2)))
+    // All are read before one that is wrong counts.
+    let mut number = |index: usize| {
+        entries.get(index).map_or(Some(0.0), |entry| walk.length(entry, what).map(|number| number.value))
+    };
+    let [x, y, z] = [number(0), number(1), number(2)];
+    Some(DVec3::new(x?, y?, z?))
 }
 
 /// Checks that every segment starts where the one before ends.
