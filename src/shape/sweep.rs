@@ -102,6 +102,18 @@ struct Tip {
     shrink: f64,
 }
 
+impl Tip {
+    /// The place on a cap that belongs to one of its rim; `slope` is the share of the cap by u.
+    fn on_cap(&self, cap: &Cap, slope: f64, rim: &Jet) -> Jet {
+        let arm = rim.point - (self.center - self.outward * self.rim);
+        Jet {
+            point: self.center + arm * cap.share + self.outward * (self.rim * (cap.rise - 1.0)),
+            du: (arm * cap.share_slope + self.outward * (self.rim * cap.rise_slope)) * slope,
+            dv: rim.dv * cap.share,
+        }
+    }
+}
+
 impl Sweep {
     /// The tube that `spec` describes. Takes about a millisecond.
     pub fn new(spec: &TubeSpec) -> Result<Self, Fault> {
@@ -143,7 +155,13 @@ impl Sweep {
         let mut sweep =
             Self { chain, frames, stack, meridian: plain, start: Tip::default(), end: Tip::default() };
         let ends = [(spec.start, points.0, 0.0), (spec.end, points.1, 1.0)];
-        let disks = ends.map(|(end, point, w)| sweep.disk(w, end == End::Closed && !point));
+        let disks = ends.map(|(end, point, w)| match end {
+            End::Open => (DVec3::ZERO, 0.0),
+            End::Closed => {
+                let (center, radius) = sweep.disk(w);
+                (center, if point { 0.0 } else { radius })
+            }
+        });
         let meridian = {
             let pace = |w: f64| {
                 let speed = sweep.chain.at(w).speed;
@@ -195,25 +213,25 @@ impl Sweep {
         self.meridian.invert(w)
     }
 
-    /// Center and mean radius of the section at curve parameter `w`; the radius is 0 unless `wanted`.
-    fn disk(&self, w: f64, wanted: bool) -> (DVec3, f64) {
+    /// Center and mean radius of the section at curve parameter `w`.
+    fn disk(&self, w: f64) -> (DVec3, f64) {
         const SAMPLES: usize = 64;
-        let mut ring = [Jet::default(); SAMPLES];
-        self.body_ring(w, 0.0, &mut ring);
-        let center = ring.iter().map(|jet| jet.point).sum::<DVec3>() / SAMPLES as f64;
-        let radius = ring.iter().map(|jet| jet.point.distance(center)).sum::<f64>() / SAMPLES as f64;
-        (center, if wanted { radius } else { 0.0 })
+        let mut ring = [DVec3::ZERO; SAMPLES];
+        self.body_points(w, &mut ring);
+        let center = ring.iter().sum::<DVec3>() / SAMPLES as f64;
+        let radius = ring.iter().map(|point| point.distance(center)).sum::<f64>() / SAMPLES as f64;
+        (center, radius)
     }
 
     /// Greatest rate (a unit of u) at which the ring at an open end comes closer to its center when u goes on.
     fn shrink(&self, u: f64, sign: f64) -> f64 {
-        let ring = |k: u32| self.tube(u, f64::from(k) / 16.0);
-        let mean =
-            (0..16).map(ring).fold((DVec3::ZERO, DVec3::ZERO), |(p, d), jet| (p + jet.point, d + jet.du));
-        let (center, drift) = (mean.0 / 16.0, mean.1 / 16.0);
-        (0..16)
-            .map(|k| {
-                let jet = ring(k);
+        const SAMPLES: usize = 16;
+        let mut ring = [Jet::default(); SAMPLES];
+        self.tube_ring(u, 0.0, &mut ring);
+        let mean = ring.iter().fold((DVec3::ZERO, DVec3::ZERO), |(p, d), jet| (p + jet.point, d + jet.du));
+        let (center, drift) = (mean.0 / SAMPLES as f64, mean.1 / SAMPLES as f64);
+        ring.iter()
+            .map(|jet| {
                 let arm = jet.point - center;
                 -sign * (jet.du - drift).dot(arm) / arm.length_squared().max(1e-12)
             })
@@ -251,6 +269,33 @@ impl Sweep {
         }
     }
 
+    /// The points of the same, from v = 0 on.
+    fn body_points(&self, w: f64, points: &mut [DVec3]) {
+        let (segment, t) = self.chain.locate(w);
+        let (center, tangent) = self.chain.stand(segment, t);
+        let axis = self.frames.across(segment, t, tangent);
+        let other = tangent.cross(axis);
+        let line = self.stack.at(w);
+        let count = points.len() as f64;
+        for (k, place) in points.iter_mut().enumerate() {
+            let point = line.point(k as f64 / count);
+            let across = axis * point.x + other * point.y;
+            *place = center + if self.stack.planar() { across } else { across + tangent * point.z };
+        }
+    }
+
+    /// Points around the tube, evenly from v = 0 on: those of a ring without their derivatives.
+    pub(crate) fn points_around(&self, u: f64, points: &mut [DVec3]) {
+        if self.curved().contains(&u) {
+            return self.body_points(self.meridian.eval(u).0, points);
+        }
+        let mut jets = vec![Jet::default(); points.len()];
+        self.ring(u, 0.0, &mut jets);
+        for (point, jet) in points.iter_mut().zip(jets) {
+            *point = jet.point;
+        }
+    }
+
     /// The part of u on which the curve alone makes the surface.
     #[inline]
     fn curved(&self) -> RangeInclusive<f64> {
@@ -267,13 +312,27 @@ impl Sweep {
         Jet { point: jet.point, du: jet.du * rate, dv: jet.dv }
     }
 
-    /// The surface outside of the curve's part of u: caps, poles and what lies beyond the ends.
-    #[cold]
-    fn beyond(&self, u: f64, v: f64) -> Jet {
+    /// The same around a whole turn.
+    fn tube_ring(&self, u: f64, from: f64, jets: &mut [Jet]) {
+        let (w, rate) = self.meridian.eval(u);
+        self.body_ring(w, from, jets);
+        for jet in jets {
+            jet.du *= rate;
+        }
+    }
+
+    /// The end that is nearer to a place outside of the curve's part of u; its u, and the sign of the way into the tube.
+    fn tip(&self, u: f64) -> (&Tip, f64, f64) {
         // A wide cap on a short tube takes more than half of u.
         let curved = self.curved();
         let at_start = u < 0.5 * (curved.start() + curved.end());
-        let (tip, edge, sign) = if at_start { (&self.start, 0.0, 1.0) } else { (&self.end, 1.0, -1.0) };
+        if at_start { (&self.start, 0.0, 1.0) } else { (&self.end, 1.0, -1.0) }
+    }
+
+    /// The surface outside of the curve's part of u: caps, poles and what lies beyond the ends.
+    #[cold]
+    fn beyond(&self, u: f64, v: f64) -> Jet {
+        let (tip, edge, sign) = self.tip(u);
         if tip.closed {
             // The distance from the pole; on its other side the opposite half turn.
             let depth = sign * (u - edge);
@@ -283,15 +342,8 @@ impl Sweep {
                 let jet = self.tube(edge + sign * depth, v);
                 return Jet { du: jet.du * flip, ..jet };
             }
-            let rim = self.tube(edge + sign * tip.width, v);
-            let arm = rim.point - (tip.center - tip.outward * tip.rim);
             let cap = Cap::at(depth / tip.width, tip.rounded);
-            let slope = flip * sign / tip.width;
-            return Jet {
-                point: tip.center + arm * cap.share + tip.outward * (tip.rim * (cap.rise - 1.0)),
-                du: (arm * cap.share_slope + tip.outward * (tip.rim * cap.rise_slope)) * slope,
-                dv: rim.dv * cap.share,
-            };
+            return tip.on_cap(&cap, flip * sign / tip.width, &self.tube(edge + sign * tip.width, v));
         }
         const STEP: f64 = 1e-5;
         let jet = self.tube(edge, v);
@@ -357,16 +409,67 @@ impl ParametricSurface for Sweep {
     }
 
     fn ring(&self, u: f64, from: f64, jets: &mut [Jet]) {
+        let (tip, edge, sign) = self.tip(u);
+        let depth = sign * (u - edge);
         if self.curved().contains(&u) {
-            let (w, rate) = self.meridian.eval(u);
-            self.body_ring(w, from, jets);
+            self.tube_ring(u, from, jets);
+        } else if tip.closed && (0.0..tip.width).contains(&depth) {
+            // A cap hangs on its rim.
+            self.tube_ring(edge + sign * tip.width, from, jets);
+            let cap = Cap::at(depth / tip.width, tip.rounded);
             for jet in jets {
-                jet.du *= rate;
+                *jet = tip.on_cap(&cap, sign / tip.width, jet);
             }
         } else {
             let count = jets.len() as f64;
             for (k, jet) in jets.iter_mut().enumerate() {
                 *jet = self.beyond(u, from + k as f64 / count);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::{Bezier, Interpolation, Profile, Section, TubeSpec};
+    use glam::DVec2;
+
+    #[test]
+    fn a_ring_is_made_of_its_jets_on_tubes_caps_and_points() {
+        let ellipse = |at: f64, a: f64, b: f64| Section {
+            at,
+            profile: Profile::Ellipse { axes: [a, b], offset: DVec2::new(0.2 * a, 0.0) },
+        };
+        let corner = |k: u32| {
+            let (sin, cos) = math::sin_cos(-math::TAU * f64::from(k) / 12.0);
+            DVec3::new(9.0 * cos, (7.0 + cos) * sin, 0.0)
+        };
+        let ring = Section { at: 0.4, profile: Profile::Loop((0..12).map(corner).collect()) };
+        let points = [[0.0; 3], [0.0, 0.0, 40.0], [0.0, 30.0, 80.0]].map(DVec3::from);
+        for middle in [ellipse(0.4, 9.0, 7.0), ring] {
+            for (start, end) in [(6.0, 4.0), (0.0, 4.0), (5.0, 0.0)] {
+                let spec = TubeSpec {
+                    curve: vec![Bezier::new(&points).unwrap()],
+                    sections: vec![ellipse(0.0, start, start), middle.clone(), ellipse(1.0, end, end)],
+                    interpolation: Interpolation::Smooth,
+                    start: End::Closed,
+                    end: if end == 4.0 { End::Open } else { End::Closed },
+                };
+                let sweep = Sweep::new(&spec).unwrap();
+                for u in [-0.01, 0.0, 1e-7, 0.01, 0.02, 0.3, 0.5, 0.97, 0.99, 1.0 - 1e-7, 1.0, 1.02] {
+                    let mut jets = [Jet::default(); 20];
+                    sweep.ring(u, 0.1, &mut jets);
+                    for (k, jet) in jets.iter().enumerate() {
+                        let v = 0.1 + k as f64 / 20.0;
+                        assert_eq!(*jet, sweep.jet(u, v), "{u} {v}");
+                    }
+                    let mut points = [DVec3::ZERO; 20];
+                    sweep.points_around(u, &mut points);
+                    for (k, point) in points.iter().enumerate() {
+                        assert_eq!(*point, sweep.jet(u, k as f64 / 20.0).point, "{u} {k}");
+                    }
+                }
             }
         }
     }

@@ -5,7 +5,7 @@ use super::tube::Places;
 use super::walk::Walk;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::ir::{Gauge, MAX_LOOPS, MAX_ROW};
-use crate::shape::{End, Jet, ParametricSurface, Sweep};
+use crate::shape::{End, Sweep};
 use glam::DVec3;
 
 /// Fewest stitches around an open tube.
@@ -113,10 +113,10 @@ fn narrowest_station(girths: &[f64], places: &Places) -> usize {
 }
 
 fn measure(surface: &Sweep) -> Measures {
-    let mut jets = [Jet::default(); AROUND];
-    let mut ring = |station: usize| {
-        surface.ring(station as f64 / STATIONS as f64, 0.0, &mut jets);
-        jets.map(|jet| jet.point)
+    let ring = |station: usize| {
+        let mut points = [DVec3::ZERO; AROUND];
+        surface.points_around(station as f64 / STATIONS as f64, &mut points);
+        points
     };
     let girth = |ring: &[DVec3]| -> f64 {
         ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| a.distance(*b)).sum()
