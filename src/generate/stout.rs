@@ -52,11 +52,11 @@ impl<'s> Stout<'s> {
             return None;
         }
         let ends = [0.0, 1.0].map(|u| surface.point(u, 0.0));
+        let mut ring = [Jet::default(); LOOKS as usize];
         let place = |k: usize| {
-            let u = k as f64 / PLACES as f64;
-            let points = (0..LOOKS).map(|j| surface.point(u, f64::from(j) / f64::from(LOOKS)));
-            let middle = points.sum::<DVec3>() / f64::from(LOOKS);
-            let around = girth(surface, u, LOOKS);
+            surface.ring(k as f64 / PLACES as f64, 0.0, &mut ring);
+            let middle = ring.iter().map(|jet| jet.point).sum::<DVec3>() / f64::from(LOOKS);
+            let around = ring.iter().map(|jet| jet.dv.length()).sum::<f64>() / f64::from(LOOKS);
             let near = ends.map(|end| middle.distance(end)).into_iter().fold(f64::INFINITY, f64::min);
             let pole = around < least && near < POLE * gauge.height;
             let scale = (least / around).max(1.0);
