@@ -57,15 +57,12 @@ impl ClosedLine {
     /// The line through even samples, with derivatives of fourth order from them.
     fn from_samples(samples: &[DVec3]) -> Self {
         let count = samples.len();
-        let turn = |i: usize| if i < count { i } else { i - count };
-        let at = |i: usize| samples[turn(i)];
-        let knots = (0..count)
-            .map(|i| {
-                let slope = (8.0 * (at(i + 1) - at(i + count - 1)) - (at(i + 2) - at(i + count - 2))) / 12.0;
-                [samples[i], slope]
-            })
-            .collect();
-        Self { knots }
+        let mut around = Vec::with_capacity(count + 4);
+        around.extend_from_slice(&samples[count - 2..]);
+        around.extend_from_slice(samples);
+        around.extend_from_slice(&samples[..2]);
+        let knot = |five: &[DVec3]| [five[2], (8.0 * (five[3] - five[1]) - (five[4] - five[0])) / 12.0];
+        Self { knots: around.windows(5).map(knot).collect() }
     }
 
     fn constant(value: DVec3, count: usize) -> Self {
@@ -79,13 +76,15 @@ impl ClosedLine {
     }
 
     #[inline]
-    fn eval_at(&self, Knot { index, t }: Knot) -> (DVec3, DVec3) {
-        let count = self.knots.len();
-        let [a, da] = self.knots[index];
-        let [b, db] = self.knots[if index + 1 == count { 0 } else { index + 1 }];
+    fn eval_at(&self, knot: Knot) -> (DVec3, DVec3) {
+        let [a, da] = self.knots[knot.index];
+        let [b, db] = self.knots[knot.next];
         let rise = b - a;
-        let (square, cube) = (3.0 * rise - 2.0 * da - db, da + db - 2.0 * rise);
-        (a + t * (da + t * (square + t * cube)), (da + t * (2.0 * square + t * 3.0 * cube)) * count as f64)
+        let [value, slope] = [knot.value, knot.slope];
+        (
+            a + (rise * value[0] + da * value[1] + db * value[2]),
+            (rise * slope[0] + da * slope[1] + db * slope[2]) * self.knots.len() as f64,
+        )
     }
 
     /// The point alone.
@@ -95,12 +94,10 @@ impl ClosedLine {
     }
 
     #[inline]
-    fn point_at(&self, Knot { index, t }: Knot) -> DVec3 {
-        let [a, da] = self.knots[index];
-        let [b, db] = self.knots[if index + 1 == self.knots.len() { 0 } else { index + 1 }];
-        let rise = b - a;
-        let (square, cube) = (3.0 * rise - 2.0 * da - db, da + db - 2.0 * rise);
-        a + t * (da + t * (square + t * cube))
+    fn point_at(&self, knot: Knot) -> DVec3 {
+        let [a, da] = self.knots[knot.index];
+        let [b, db] = self.knots[knot.next];
+        a + ((b - a) * knot.value[0] + da * knot.value[1] + db * knot.value[2])
     }
 
     /// Mean of the points.
@@ -111,14 +108,15 @@ impl ClosedLine {
     /// How often the line turns around as seen along z: 1 counterclockwise, -1 clockwise, anything else for a
     /// line that crosses itself.
     pub fn turns(&self) -> i32 {
-        let places = || self.knots.iter().map(|knot| knot[0]);
-        let ends = places().zip(places().cycle().skip(1));
-        let slopes: Vec<DVec2> = ends
-            .map(|(place, next)| (next - place).truncate())
-            .filter(|slope| slope.length_squared() > 0.0)
-            .collect();
-        // As often as the slope turns past the x axis.
-        slopes.iter().zip(slopes.iter().cycle().skip(1)).map(|(slope, next)| passed(*slope, *next)).sum()
+        // As often as the slope turns past the direction of x.
+        let mut slopes =
+            self.knots.iter().zip(self.knots.iter().cycle().skip(1)).filter_map(|(knot, next)| {
+                let slope = (next[0] - knot[0]).truncate();
+                (slope.length_squared() > 0.0).then_some(slope)
+            });
+        let Some(first) = slopes.next() else { return 0 };
+        let (turns, last) = slopes.fold((0, first), |(turns, last), next| (turns + passed(last, next), next));
+        turns + passed(last, first)
     }
 
     /// Area enclosed as seen along z, positive counterclockwise.
@@ -156,22 +154,29 @@ impl ClosedLine {
 
 /// Whether the least turn from one slope to the next passes the direction of x: 1 counterclockwise, -1 clockwise, 0 if not.
 fn passed(slope: DVec2, next: DVec2) -> i32 {
+    if (slope.y < 0.0) == (next.y < 0.0) {
+        return 0;
+    }
     let cross = slope.perp_dot(next);
     // Along one line it is the sides that tell, and what turns back turns counterclockwise.
     let left =
         if cross == 0.0 { slope.dot(next) < 0.0 || (slope.x > 0.0) == (slope.y < 0.0) } else { cross > 0.0 };
-    match (slope.y < 0.0, next.y < 0.0) {
-        (true, false) if left => 1,
-        (false, true) if !left => -1,
+    match (slope.y < 0.0, left) {
+        (true, true) => 1,
+        (false, false) => -1,
         _ => 0,
     }
 }
 
-/// A place between two knots of a line: the first of them, and the share of the way to the next.
+/// A place between two knots of a line, and the weights of the rise between them and of their slopes.
 #[derive(Clone, Copy)]
 struct Knot {
     index: usize,
-    t: f64,
+    next: usize,
+    /// In the way from the first knot.
+    value: [f64; 3],
+    /// In the derivative by the step from knot to knot.
+    slope: [f64; 3],
 }
 
 impl Knot {
@@ -181,7 +186,14 @@ impl Knot {
         let fraction = v - (v as i64) as f64;
         let scaled = (if fraction < 0.0 { fraction + 1.0 } else { fraction }) * count as f64;
         let index = (scaled as usize).min(count - 1);
-        Self { index, t: scaled - index as f64 }
+        let t = scaled - index as f64;
+        let (t2, t3) = (t * t, t * t * t);
+        Self {
+            index,
+            next: if index + 1 == count { 0 } else { index + 1 },
+            value: [3.0 * t2 - 2.0 * t3, t - 2.0 * t2 + t3, t3 - t2],
+            slope: [6.0 * (t - t2), 1.0 - 4.0 * t + 3.0 * t2, 3.0 * t2 - 2.0 * t],
+        }
     }
 }
 
@@ -273,7 +285,7 @@ impl LoopStack {
         let between = (before != after).then(|| {
             let inverse = 1.0 / (self.places[after] - self.places[before]);
             let slopes = self.smooth.as_ref().map(|smooth| [&smooth.slopes[before], &smooth.slopes[after]]);
-            Between { next: &self.lines[after], slopes, t: (w - self.places[before]) * inverse, inverse }
+            Between::new(&self.lines[after], slopes, (w - self.places[before]) * inverse, inverse)
         });
         Cut { line: &self.lines[before], between, frame: self.smooth.as_ref().map(|smooth| smooth.frame(w)) }
     }
@@ -291,38 +303,44 @@ struct Between<'s> {
     next: &'s ClosedLine,
     /// How the lines change at both, where the way is smooth.
     slopes: Option<[&'s ClosedLine; 2]>,
-    /// Share of the way, and one by its length.
-    t: f64,
-    inverse: f64,
+    /// Weights of the rise from line to line and of these in the way, and in its derivative.
+    value: [f64; 3],
+    slope: [f64; 3],
 }
 
-impl Between<'_> {
+impl<'s> Between<'s> {
+    /// A share `t` of the way, of which the whole is one by `inverse` long.
+    #[inline]
+    fn new(next: &'s ClosedLine, slopes: Option<[&'s ClosedLine; 2]>, t: f64, inverse: f64) -> Self {
+        let (value, slope) = if slopes.is_none() {
+            ([t, 0.0, 0.0], [inverse, 0.0, 0.0])
+        } else {
+            let (t2, t3, width) = (t * t, t * t * t, 1.0 / inverse);
+            (
+                [3.0 * t2 - 2.0 * t3, (t - 2.0 * t2 + t3) * width, (t3 - t2) * width],
+                [6.0 * (t - t2) * inverse, 1.0 - 4.0 * t + 3.0 * t2, 3.0 * t2 - 2.0 * t],
+            )
+        };
+        Self { next, slopes, value, slope }
+    }
+
     /// What lies between two of a kind, with their slopes where the way is smooth.
     #[inline]
     fn point(&self, a: DVec3, b: DVec3, slopes: Option<[DVec3; 2]>) -> DVec3 {
-        let (t, width) = (self.t, 1.0 / self.inverse);
+        let [rise, low, high] = self.value;
         match slopes {
-            None => a + (b - a) * t,
-            Some([before, after]) => {
-                let (t2, t3) = (t * t, t * t * t);
-                let blend = [t - 2.0 * t2 + t3, 3.0 * t2 - 2.0 * t3, t3 - t2];
-                a + (b - a) * blend[1] + (before * blend[0] + after * blend[2]) * width
-            }
+            None => a + (b - a) * rise,
+            Some([before, after]) => a + ((b - a) * rise + before * low + after * high),
         }
     }
 
     /// The same, and how it changes.
     #[inline]
     fn mix(&self, a: DVec3, b: DVec3, slopes: Option<[DVec3; 2]>) -> (DVec3, DVec3) {
-        let (t, inverse) = (self.t, self.inverse);
+        let [rise, low, high] = self.slope;
         let slope = match slopes {
-            None => (b - a) * inverse,
-            Some([before, after]) => {
-                let t2 = t * t;
-                (b - a) * ((6.0 * t - 6.0 * t2) * inverse)
-                    + before * (1.0 - 4.0 * t + 3.0 * t2)
-                    + after * (3.0 * t2 - 2.0 * t)
-            }
+            None => (b - a) * rise,
+            Some([before, after]) => (b - a) * rise + before * low + after * high,
         };
         (self.point(a, b, slopes), slope)
     }

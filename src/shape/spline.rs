@@ -9,9 +9,14 @@ pub(super) struct Spline {
     spans: Vec<[DVec3; 4]>,
     /// Arc length up to each piece, and the whole.
     pub(super) lengths: Vec<f64>,
+    /// Lengths of the derivative at both ends of each piece.
+    speeds: Vec<[f64; 2]>,
 }
 
+/// Pieces of a span.
 const PARTS: usize = 4;
+/// Share of a span that each of them has.
+const PART: f64 = 1.0 / PARTS as f64;
 
 impl Spline {
     /// Through three points or more, no two neighbors of them alike.
@@ -34,15 +39,24 @@ impl Spline {
             let rise = points[next] - a;
             [a, da, 3.0 * rise - 2.0 * da - db, da + db - 2.0 * rise]
         };
-        let mut spline = Self { spans: (0..count).map(cubic).collect(), lengths: Vec::new() };
-        spline.lengths.reserve(count * PARTS + 1);
+        let pieces = count * PARTS;
+        let mut spline = Self {
+            spans: (0..count).map(cubic).collect(),
+            lengths: Vec::with_capacity(pieces + 1),
+            speeds: Vec::with_capacity(pieces),
+        };
         spline.lengths.push(0.0);
         let mut total = 0.0;
         for span in 0..count {
+            let mut last = spline.speeds(span, [0.0])[0];
             for part in 0..PARTS {
-                let from = part as f64 / PARTS as f64;
-                total += spline.length(span, from, from + 1.0 / PARTS as f64);
+                let (from, to) = (part as f64 * PART, (part + 1) as f64 * PART);
+                let [a, b, c, d, e] = bezier::nodes(from, to);
+                let [a, b, c, d, e, speed] = spline.speeds(span, [a, b, c, d, e, to]);
+                total += bezier::weigh(from, to, [a, b, c, d, e]);
                 spline.lengths.push(total);
+                spline.speeds.push([last, speed]);
+                last = speed;
             }
         }
         spline
@@ -68,22 +82,20 @@ impl Spline {
         std::array::from_fn(|k| (x[k] * x[k] + y[k] * y[k] + z[k] * z[k]).sqrt())
     }
 
-    fn length(&self, span: usize, from: f64, to: f64) -> f64 {
-        bezier::weigh(from, to, self.speeds(span, bezier::nodes(from, to)))
-    }
-
     /// Point and unit direction at an arc length that lies in the given piece.
     pub(super) fn at_length(&self, piece: usize, target: f64) -> (DVec3, DVec3) {
-        let (span, from) = (piece / PARTS, (piece % PARTS) as f64 / PARTS as f64);
+        let (span, from) = (piece / PARTS, (piece % PARTS) as f64 * PART);
         let size = self.lengths[piece + 1] - self.lengths[piece];
-        let mut t = from + (target - self.lengths[piece]) / size.max(f64::MIN_POSITIVE) / PARTS as f64;
-        for _ in 0..2 {
-            let [a, b, c, d, e] = bezier::nodes(from, t);
-            let [a, b, c, d, e, speed] = self.speeds(span, [a, b, c, d, e, t]);
-            let miss = self.lengths[piece] + bezier::weigh(from, t, [a, b, c, d, e]) - target;
-            if speed > 0.0 {
-                t = (t - miss / speed).clamp(from, from + 1.0 / PARTS as f64);
-            }
+        let share = (target - self.lengths[piece]) / size.max(f64::MIN_POSITIVE);
+        // A cubic of the length, with one by the speeds as slopes, comes so near that one step of Newton does the rest.
+        let [low, high] = self.speeds[piece].map(|speed| (size / (speed * PART)).min(3.0));
+        let cubic = share * (low + share * (3.0 - 2.0 * low - high + share * (low + high - 2.0)));
+        let mut t = from + cubic.clamp(0.0, 1.0) * PART;
+        let [a, b, c, d, e] = bezier::nodes(from, t);
+        let [a, b, c, d, e, speed] = self.speeds(span, [a, b, c, d, e, t]);
+        let miss = self.lengths[piece] + bezier::weigh(from, t, [a, b, c, d, e]) - target;
+        if speed > 0.0 {
+            t = (t - miss / speed).clamp(from, from + PART);
         }
         let [start, line, square, cube] = self.spans[span];
         (start + t * (line + t * (square + t * cube)), self.slope(span, t).normalize_or_zero())
