@@ -133,6 +133,7 @@ pub fn read(
     };
     let mut input = input.filter(|_| sink.errors() == errors)?;
     match &mut input {
+        // Our own readers have done so, for they cut by it; one from elsewhere knows nothing of options.
         Input::Shape(shape) => shape.gauge = options.gauge.unwrap_or(shape.gauge),
         Input::Program(program) => program.gauge = options.gauge.or(program.gauge),
         Input::Code(_) => {}

@@ -147,7 +147,6 @@ impl Request {
     pub(super) fn fulfill(
         self,
         source: &Source,
-        gauge: Option<Gauge>,
         sources: &mut Sources<'_>,
         sink: &mut Sink<'_>,
     ) -> Option<Shape> {
@@ -175,7 +174,6 @@ impl Request {
             }
         };
         let soup = mesh::soup(&file, reader, sources, sink)?;
-        let gauge = gauge.unwrap_or(self.gauge);
-        mesh::shape(soup, self.name, gauge, (self.unit, self.up), &self.wish, self.span, sink)
+        mesh::shape(soup, self.name, self.gauge, (self.unit, self.up), &self.wish, self.span, sink)
     }
 }

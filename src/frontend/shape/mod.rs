@@ -60,7 +60,7 @@ pub(crate) fn read_at(
     walk.finish().into_iter().for_each(|diagnostic| sink.push(diagnostic));
     let shape = match document.filter(|_| sink.errors() == errors)? {
         Document::Shape(shape) => shape,
-        Document::Mesh(request, wishes) => Shape { wishes, ..request.fulfill(source, gauge, sources, sink)? },
+        Document::Mesh(request, wishes) => Shape { wishes, ..request.fulfill(source, sources, sink)? },
     };
     Some(Input::Shape(Box::new(shape)))
 }
