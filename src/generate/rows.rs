@@ -4,6 +4,8 @@ use crate::ir::Gauge;
 use crate::math;
 use crate::shape::{End, Jet, ParametricSurface, girth};
 
+pub(crate) use crate::shape::row_speed;
+
 /// Share of the mean row distance in the spacing rule; the rest is the least distance around the row.
 /// The paper's rule is 0; a fifth opens fewer short rows at no cost elsewhere.
 const MEAN_SHARE: f64 = 0.2;
@@ -34,17 +36,6 @@ pub(crate) struct Rows {
     unevenness: f64,
     /// Number of rows; whole.
     pub count: f64,
-}
-
-/// Distance of neighboring rows for one unit of u: the part of `du` across the row.
-#[inline]
-pub(crate) fn row_speed(jet: &Jet) -> f64 {
-    let around = jet.dv.length_squared();
-    if around < 1e-24 {
-        return jet.du.length();
-    }
-    let along = jet.du.dot(jet.dv);
-    (jet.du.length_squared() - along * along / around).max(0.0).sqrt()
 }
 
 /// Rows beyond an end: half a row at a pole, where the ring next to it lies one row off on average.

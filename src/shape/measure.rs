@@ -61,3 +61,42 @@ pub fn is_revolution<S: ParametricSurface + ?Sized>(surface: &S) -> bool {
         })
     })
 }
+
+/// Distance of neighboring rows for one unit of u: the part of `du` across the row.
+#[inline]
+pub(crate) fn row_speed(jet: &Jet) -> f64 {
+    let around = jet.dv.length_squared();
+    if around < 1e-24 {
+        return jet.du.length();
+    }
+    let along = jet.du.dot(jet.dv);
+    (jet.du.length_squared() - along * along / around).max(0.0).sqrt()
+}
+
+/// Sides of a tube of which one is the slowest, and places along it at which that is measured.
+const SIDES: usize = 48;
+const STATIONS: u32 = 16;
+
+/// The side of a tube on which rows lie closest, in turns; the first of those that are alike. Found `between` the sides that are
+/// looked at, it does not depend on where these begin.
+pub(crate) fn slowest_side<S: ParametricSurface + ?Sized>(surface: &S, between: bool) -> f64 {
+    let mut speeds = [0.0; SIDES];
+    let mut ring = [Jet::default(); SIDES];
+    for station in 0..STATIONS {
+        surface.ring((f64::from(station) + 0.5) / f64::from(STATIONS), 0.0, &mut ring);
+        for (sum, jet) in speeds.iter_mut().zip(&ring) {
+            *sum += row_speed(jet);
+        }
+    }
+    let (mut best, mut least) = (0, f64::MAX);
+    for (side, speed) in speeds.into_iter().enumerate() {
+        if speed < least - 1e-6 * speed {
+            (best, least) = (side, speed);
+        }
+    }
+    // The parabola through the sides beside it.
+    let [low, here, high] = [SIDES - 1, 0, 1].map(|off| speeds[(best + off) % SIDES]);
+    let bend = low - 2.0 * here + high;
+    let off = if between && bend > 0.0 { (0.5 * (low - high) / bend).clamp(-0.5, 0.5) } else { 0.0 };
+    (best as f64 + off) / SIDES as f64
+}

@@ -27,6 +27,7 @@ pub mod sweep;
 pub use bezier::Bezier;
 pub use drift::{Drift, Twisted, for_maker};
 pub use measure::{area, girth, is_revolution, length_along};
+pub(crate) use measure::{row_speed, slowest_side};
 pub use mirror::Mirrored;
 pub(crate) use mirror::Reversed;
 pub use ring::Ring;

@@ -40,9 +40,6 @@ struct Outer {
 /// Samples that each row has beside its own.
 const BESIDE: usize = 3;
 
-/// Sides of a tube of which one is the slowest, and places along it at which that is measured.
-const SIDES: usize = 48;
-const STATIONS: u32 = 16;
 /// Most rows of samples.
 const MOST_LOOPS: usize = 100_000;
 /// Most samples around.
@@ -138,20 +135,7 @@ impl Stack {
 
     /// Where around the tube rows lie closest, in turns: found between samples, so that it does not depend on where these begin.
     pub(crate) fn slowest_side(&self) -> f64 {
-        let mut speeds = [0.0; SIDES];
-        for station in 0..STATIONS {
-            let u = (f64::from(station) + 0.5) / f64::from(STATIONS);
-            for (side, speed) in speeds.iter_mut().enumerate() {
-                let jet = self.eval(u, side as f64 / SIDES as f64);
-                *speed += jet.du.reject_from_normalized(jet.dv.normalize_or_zero()).length();
-            }
-        }
-        let best = (0..SIDES).fold(0, |best, side| if speeds[side] < speeds[best] { side } else { best });
-        // The parabola through the sides beside it.
-        let [low, here, high] = [SIDES - 1, 0, 1].map(|off| speeds[(best + off) % SIDES]);
-        let bend = low - 2.0 * here + high;
-        let off = if bend > 0.0 { 0.5 * (low - high) / bend } else { 0.0 };
-        (best as f64 + off) / SIDES as f64
+        super::slowest_side(self, true)
     }
 
     /// Replaces the samples, row by row.
