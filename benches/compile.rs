@@ -9,6 +9,7 @@ use picot::frontend::{Input, reader};
 use picot::generate::Preset;
 use picot::ir::Gauge;
 use picot::ir::verify::verify;
+use picot::shape::{Shape, area};
 use std::hint::black_box;
 
 const SHAPES: [(&str, &str); 4] = [
@@ -35,6 +36,16 @@ fn compile(text: &str, size: f64) -> u64 {
     verified.facts().stitches(&verified)
 }
 
+fn read(text: &str, options: &picot::Options) -> Shape {
+    let loader = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+    let mut sources = Sources::new(&loader);
+    let source = sources.add("shape", text.as_bytes().to_vec()).expect("small");
+    let reader = reader("shape").expect("listed");
+    let input = picot::read(&source, reader, options, &mut sources, &mut Sink::new());
+    let Some(Input::Shape(shape)) = input else { panic!("a shape") };
+    *shape
+}
+
 fn paper(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("paper");
     for (name, text) in SHAPES {
@@ -50,9 +61,12 @@ fn paper(criterion: &mut Criterion) {
 fn scale(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("scale");
     group.sample_size(10);
+    let (_, text) = SHAPES[3];
+    let shape = read(text, &picot::Options::default());
+    let area: f64 = shape.tubes.iter().map(|tube| area(&*tube.surface, 64, 64)).sum();
     for size in [2.4, 2.0, 1.5, 1.0, 0.78, 0.5, 0.247, 0.0782, 0.0248] {
-        let (_, text) = SHAPES[3];
-        group.throughput(Throughput::Elements(compile(text, size)));
+        // To a hundredth or so: to count them takes a compile, which a filter would not spare.
+        group.throughput(Throughput::Elements((area / (size * size)) as u64));
         group.bench_with_input(BenchmarkId::new("d", size), &size, |bencher, size| {
             bencher.iter(|| compile(text, *size));
         });
@@ -63,14 +77,9 @@ fn scale(criterion: &mut Criterion) {
 fn generator(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("generator");
     for (name, text) in &SHAPES[2..] {
-        let loader = |_: &str| Err(std::io::ErrorKind::NotFound.into());
-        let mut sources = Sources::new(&loader);
         let mut sink = Sink::new();
         let mut options = picot::Options { gauge: Some(Gauge::new(1.5, 1.5)), ..picot::Options::default() };
-        let source = sources.add("shape", text.as_bytes().to_vec()).expect("small");
-        let reader = reader("shape").expect("listed");
-        let input = picot::read(&source, reader, &options, &mut sources, &mut sink);
-        let Some(Input::Shape(shape)) = input else { panic!("a shape") };
+        let shape = read(text, &options);
         for way in ["std", "fast", "not settled"] {
             options.generate = picot::generate::Options::default();
             match way {
