@@ -100,3 +100,35 @@ pub(crate) fn slowest_side<S: ParametricSurface + ?Sized>(surface: &S, between: 
     let off = if between && bend > 0.0 { (0.5 * (low - high) / bend).clamp(-0.5, 0.5) } else { 0.0 };
     (best as f64 + off) / SIDES as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::analytic::{Cylinder, TorusArc};
+    use crate::shape::{End, Ring, Stack};
+    use glam::DVec3;
+
+    #[test]
+    fn rows_lie_closest_on_the_inner_side_of_a_bend() {
+        let bend = TorusArc { major: 60.0, minor: 20.0, angle: 1.5 };
+        let speed = |v: f64| row_speed(&bend.jet(0.5, v));
+        let least = (0..960).map(|k| speed(f64::from(k) / 960.0)).fold(f64::MAX, f64::min);
+        for between in [false, true] {
+            let side = slowest_side(&bend, between);
+            assert!(speed(side) < least * 1.0001, "{side}");
+        }
+        // A stack of the same tube, begun anywhere, has that side at the same place.
+        for begin in [0.0, 0.003, 0.2511, 0.7] {
+            let ring = |k: u32| {
+                let point = |j: u32| bend.point(f64::from(k) / 16.0, f64::from(j) / 96.0 + begin);
+                Ring::new((0..96).map(point).collect::<Vec<DVec3>>()).unwrap()
+            };
+            let stack = Stack::new(&(0..=16).map(ring).collect::<Vec<_>>(), [None; 2], 64).unwrap();
+            assert_eq!(stack.ends(), [End::Open; 2]);
+            let (found, there) =
+                (stack.point(0.5, stack.slowest_side()), bend.point(0.5, slowest_side(&bend, true)));
+            assert!(found.distance(there) < 0.1, "{begin}: {found} {there}");
+        }
+        assert_eq!(slowest_side(&Cylinder { radius: 5.0, length: 20.0 }, true), 0.0);
+    }
+}
