@@ -55,9 +55,11 @@ const OFF: f64 = 0.5;
 /// How often flows are poured again at most.
 const POURS: u32 = 2;
 
-/// Meshes of more triangles than this are made coarser where their edges are shorter than this share of a stitch.
+/// Meshes of more triangles than this are made coarser where their edges are shorter than this share of a stitch; tubes that are
+/// neither round nor have limbs to about as many triangles at least. It is worth it where edges are shorter than so on average.
 const MANY: usize = 20_000;
 const COARSE: f64 = 0.8;
+const FINER: f64 = 0.7;
 
 /// How a mesh is cut into tubes; lengths are those of the mesh, millimeters by now.
 #[derive(Clone, Debug)]
@@ -134,16 +136,29 @@ impl Mesh {
     /// Cuts the mesh, or a coarser one where it is finer than its stitches need.
     fn cut_coarse(&self, plan: &Plan, progress: &mut impl FnMut(u64, u64)) -> Result<Cut, Fault> {
         let length = COARSE * plan.gauge.height.min(plan.gauge.width);
-        if self.faces.len() > MANY && self.mean_edge() < 0.7 * length {
-            // The first half is the way to fewer triangles.
-            if let Some(coarse) = self.coarse(length, |done, all| progress(done, 2 * all)) {
-                return coarse.cut_whole(plan, |done, all| progress(all + done, 2 * all));
-            }
+        let edge = if self.faces.len() > MANY { self.mean_edge() } else { f64::INFINITY };
+        if edge >= FINER * length {
+            return self.cut_whole(self, plan, progress);
         }
-        self.cut_whole(plan, progress)
+        // The first half is the way to fewer triangles.
+        let Some(coarse) = self.coarse(length, |done, all| progress(done, 2 * all)) else {
+            return self.cut_whole(self, plan, progress);
+        };
+        let cut = coarse.cut_whole(self, plan, |done, all| progress(all + done, 2 * all))?;
+        let bent =
+            |cut: &Cut| cut.pieces.len() == 1 && cut.pieces.iter().all(|it| !is_revolution(&*it.surface));
+        let enough = edge * (self.faces.len() as f64 / MANY as f64).sqrt();
+        if !bent(&cut) || enough >= length {
+            return Ok(cut);
+        }
+        // On few triangles, which are uneven by now, lines lean here and there, and rounds come out another way.
+        let finer = if edge < FINER * enough { self.coarse(enough, |_, _| ()) } else { None };
+        let finer = finer.as_ref().unwrap_or(self).cut_whole(self, plan, |_, _| ());
+        Ok(finer.ok().filter(bent).unwrap_or(cut))
     }
 
-    fn cut_whole(&self, plan: &Plan, mut progress: impl FnMut(u64, u64)) -> Result<Cut, Fault> {
+    /// Cuts this mesh, which is the given one or a coarser one of the same surface.
+    fn cut_whole(&self, given: &Self, plan: &Plan, mut progress: impl FnMut(u64, u64)) -> Result<Cut, Fault> {
         // The true field lies best; on bad triangles it has eddies in which limbs are lost.
         let sound = |cut: &Cut| {
             let [steps, samples] = SAMPLES;
@@ -155,16 +170,17 @@ impl Mesh {
             // Summed in order: for any number of threads the same.
             even && parts.collect::<Vec<f64>>().iter().sum::<f64>() < MOST_AREA * self.area()
         };
-        let fault = match self.cut_along(plan, false, &mut progress) {
+        let fault = match self.cut_along(given, plan, false, &mut progress) {
             Ok(cut) if sound(&cut) && cut.pieces.iter().all(|piece| piece.even) => return Ok(cut),
             Ok(cut) => Fault::Fork { at: cut.ends.last().map_or(DVec3::ZERO, |end| end.0) },
             Err(fault) => fault,
         };
-        self.cut_along(plan, true, &mut progress).ok().filter(sound).ok_or(fault)
+        self.cut_along(given, plan, true, &mut progress).ok().filter(sound).ok_or(fault)
     }
 
     fn cut_along(
         &self,
+        given: &Self,
         plan: &Plan,
         strict: bool,
         progress: &mut impl FnMut(u64, u64),
@@ -191,7 +207,7 @@ impl Mesh {
             let pieces = loop {
                 let done = (limbs.len() + off.len()) as u64;
                 progress(done, done + ends.others.len() as u64);
-                match mesh.next(plan, &mut flows, &mut ends, &mut dropped)? {
+                match mesh.next((given, plan), &mut flows, &mut ends, &mut dropped)? {
                     Next::Ends => {}
                     Next::Limbs(roots, goes_on) => {
                         let leaves: Vec<usize> = roots.iter().map(|(leaf, _)| *leaf).collect();
@@ -225,7 +241,7 @@ impl Mesh {
     /// What is to be done with a mesh: some limbs are cut off, or it is stacked as it is.
     fn next(
         &self,
-        plan: &Plan,
+        (given, plan): (&Self, &Plan),
         flows: &mut Flows<'_>,
         ends: &mut Ends,
         dropped: &mut Vec<DVec3>,
@@ -256,7 +272,7 @@ impl Mesh {
             if !ends.off.is_empty() {
                 return Ok(Next::Pieces(Vec::new()));
             }
-            let pieces = self.pieces(&tree, &field, ends, &ways, (plan, &divisions))?;
+            let pieces = self.pieces(&tree, &field, ends, &ways, (given, plan, &divisions))?;
             return Ok(pieces.map_or(Next::Ends, Next::Pieces));
         };
         let (before, girth) = levels.course(fork, &ways, false);
@@ -327,7 +343,7 @@ impl Mesh {
         field: &[f64],
         ends: &mut Ends,
         ways: &[Way],
-        (plan, divisions): (&Plan, &BTreeMap<usize, Division>),
+        (given, plan, divisions): (&Self, &Plan, &BTreeMap<usize, Division>),
     ) -> Result<Option<Vec<Piece>>, Fault> {
         let mut pieces: Vec<Piece> = Vec::new();
         let levels = Levels { mesh: self, field };
@@ -372,7 +388,7 @@ impl Mesh {
             let mut stack = stacked(&lines.rings, poles, seam, plan).ok_or(none)?;
             let whole = parent.is_none() && division.is_none();
             if whole && !stack.revolve(plan.gauge.width, &self.points) && ends.whole {
-                if let Some(flat) = levels.laid_flat(&lines, &course) {
+                if let Some(flat) = levels.laid_flat(given, &lines, &course) {
                     if plan.field == Field::Harmonic && self.aim(ends, free(plan), &flat, row) {
                         return Ok(None);
                     }

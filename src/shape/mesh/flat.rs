@@ -13,7 +13,7 @@ const AROUND: usize = 16;
 /// Fewest lines that tell an axis.
 const FEWEST: usize = 5;
 /// Lines that are off their planes by less than this (rows) stay as they are.
-const TILTED: f64 = 0.1;
+pub(super) const TILTED: f64 = 0.1;
 /// How often lines are laid flat at most: the middles of tilted lines are a little off the axis.
 const PASSES: u32 = 2;
 /// A line is part of a tube where the axis goes on by at least this share of the way to the next one, and where its points lie
@@ -40,7 +40,7 @@ const NEAR: f64 = 1e-6;
 const AIMS: u32 = 3;
 const OFF: f64 = 0.3;
 /// Fewest vertices that are worth being handed to another thread.
-const TOGETHER: usize = 512;
+pub(super) const TOGETHER: usize = 512;
 
 /// A limb from its first line to its last one.
 pub(super) struct Course<'c> {
@@ -57,7 +57,8 @@ pub(super) struct Course<'c> {
 /// A tube whose lines have been laid flat.
 pub(super) struct Flat {
     pub(super) lines: Lines,
-    field: Vec<f64>,
+    /// On the mesh that they were taken from.
+    pub(super) field: Vec<f64>,
 }
 
 /// The axis of a tube, from line to line.
@@ -89,10 +90,15 @@ impl Levels<'_> {
         self.stack(range, course.way, course.spacing, course.first.clone(), course.last.as_ref())
     }
 
-    /// The lines of a tube laid flat; `None` where they are flat, or are no tube's.
-    pub(super) fn laid_flat(&self, lines: &Lines, course: &Course<'_>) -> Option<Flat> {
+    /// The lines of a tube laid flat; `None` where they are flat, or are no tube's. `given` is the mesh before it was made
+    /// coarser, if it was.
+    pub(super) fn laid_flat(&self, given: &Mesh, lines: &Lines, course: &Course<'_>) -> Option<Flat> {
         let level = Spread::of(&lines.rings);
-        let mut before: Option<Spread> = None;
+        if let Some(fanned) = given.fanned(lines, &level, course) {
+            return Some(fanned);
+        }
+        let even = |spread: &Spread| spread.uneven <= UNEVEN * level.uneven || level.slimness() >= SLIM;
+        let sound = |(_, spread): &(Flat, Spread)| spread.covers(&level) && even(spread);
         let mut flat: Option<(Flat, Spread)> = None;
         for _ in 0..PASSES {
             let (lines, field) = match &flat {
@@ -105,13 +111,14 @@ impl Levels<'_> {
             let field: Vec<f64> = vertices.map(|v| axis.moved(self.mesh.point(v as u32), field[v])).collect();
             let lines = Levels { mesh: self.mesh, field: &field }.along(ends, course);
             let spread = Spread::of(&lines.rings);
-            before = flat.replace((Flat { lines, field }, spread)).map(|(_, spread)| spread);
+            if flat.as_ref().is_some_and(|(_, before)| spread.uneven > RUNS_AWAY * before.uneven) {
+                // On uneven triangles the middles sway: then those before are even enough.
+                flat = flat.filter(|(_, before)| before.uneven <= level.uneven);
+                break;
+            }
+            flat = Some((Flat { lines, field }, spread));
         }
-        let (flat, spread) = flat?;
-        let steady = before.is_none_or(|before| spread.uneven <= RUNS_AWAY * before.uneven);
-        let whole = (spread.area / level.area - 1.0).abs() < GAINED;
-        let even = spread.uneven <= UNEVEN * level.uneven || level.slimness() >= SLIM;
-        (steady && whole && even).then_some(flat)
+        flat.filter(sound).map(|(flat, _)| flat)
     }
 }
 
@@ -166,16 +173,16 @@ impl Mesh {
 }
 
 /// How lines lie from one end to the other.
-struct Spread {
+pub(super) struct Spread {
     /// Mean length along the surface, and the area.
     length: f64,
     area: f64,
     /// How much the distances of lines differ around them, as a share.
-    uneven: f64,
+    pub(super) uneven: f64,
 }
 
 impl Spread {
-    fn of(rings: &[(Ring, f64)]) -> Self {
+    pub(super) fn of(rings: &[(Ring, f64)]) -> Self {
         let (mut length, mut area, mut sum) = (0.0, 0.0, 0.0);
         let mut before: Option<(Vec<DVec3>, f64)> = None;
         for (ring, phase) in rings {
@@ -190,6 +197,11 @@ impl Spread {
             before = Some((samples, girth));
         }
         Self { length, area, uneven: sum / length.max(f64::MIN_POSITIVE) }
+    }
+
+    /// Whether these lines go over as much of the surface as others.
+    pub(super) fn covers(&self, other: &Self) -> bool {
+        (self.area / other.area - 1.0).abs() < GAINED
     }
 
     /// How many times longer than thick the tube is.

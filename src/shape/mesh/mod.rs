@@ -5,6 +5,7 @@ mod cut;
 mod divide;
 mod ends;
 mod factor;
+mod fan;
 mod field;
 mod flat;
 mod gate;
