@@ -3,7 +3,6 @@
 use super::rows::Rows;
 use super::sheet::{Sheet, ShortRow, Work};
 use crate::ir::graph::Corners;
-use crate::ir::increases::Increases;
 use crate::ir::{Direction, Graph, Node, NodeId, Tile};
 use crate::math;
 use glam::DVec3;
@@ -29,13 +28,6 @@ pub(crate) fn graph(sheet: &Sheet, rows: &Rows, start: usize, poles: [Option<DVe
         }
     }
     Graph { nodes, tiles: order.tiles, start: start as u32, pole: poles[0], end_pole: poles[1] }
-}
-
-/// The increases of a finished sheet that begins with so many stitches.
-pub(super) fn increases(sheet: &Sheet, start: usize) -> Increases {
-    let mut increases = Increases::default();
-    increases.add(&Order::of(sheet, start).tiles, start as NodeId, sheet.len());
-    increases
 }
 
 /// The short rows by the node after which they turn.

@@ -14,12 +14,12 @@ mod options;
 mod paper;
 mod patches;
 mod relax;
-mod ridges;
 mod rows;
 mod score;
 mod seam;
 mod sheet;
 mod short_rows;
+mod site;
 mod stacked;
 mod staircase;
 mod stout;
@@ -32,31 +32,18 @@ mod weave;
 pub use options::{Options, Preset};
 
 use crate::diag::{Code, Diagnostic, Sink};
-use crate::ir::increases::Increases;
 use crate::ir::maker::mirrored;
 use crate::ir::{Gauge, Graph, Hand, MAX_LOOPS};
 use crate::shape::{Attachment, End, Joint, ParametricSurface, Tube, area, for_maker, is_revolution};
 use glam::DVec3;
 use patches::Patches;
-use relax::{Brink, Effort, Ends, Firm, Mark, Relaxer, Stretch};
 use rows::Rows;
 use seam::Turned;
-use sheet::{Foot, Sheet};
+use sheet::Sheet;
+use site::{Laid, Site};
 use std::borrow::Cow;
 use stout::Stout;
-use tries::{Judge, Part};
-use untangle::Untangler;
-use weave::{Outcome, Weaver};
-
-/// Nodes may slide this far over an open end while they settle.
-const OVERHANG: [f64; 2] = [-0.02, 1.06];
-/// At a pole they keep this share of the first row's distance.
-const POLE_DISTANCE: f64 = 0.3;
-
-/// Factor of the weight of square tiles in even rounds without and with one or two open ends: there lengths can give.
-const EVEN_SQUARENESS: [f64; 3] = [0.9, 1.0, 1.1];
-/// Rows by which a given first row counts as higher, for each turn that a try would turn another one by.
-const LIFT: f64 = 1.0;
+use tries::Part;
 
 /// Drift, in turns, that is worth a word.
 const MUCH_DRIFT: f64 = 0.75;
@@ -159,7 +146,6 @@ fn lay_on(
     let target = patches.as_ref().map_or(exact, |patches| patches as &dyn ParametricSurface);
     let by = picked_up.as_ref().map(|(by, _)| *by);
     let turned = begin(target, exact, by, slit, options.maker().hand);
-    let fixed = slit || picked_up.is_some();
     let first = picked_up.as_ref().map(|(_, feet)| feet.as_slice());
     let surface: &dyn ParametricSurface = &turned;
     let expected = area(surface, 4, 16) / (gauge.width * gauge.height);
@@ -176,44 +162,37 @@ fn lay_on(
         return fail(sink, Code::TooFewRows, message, "use a smaller stitch or a longer shape");
     };
     sink.stage("stitches");
-    let most = (3.0 * expected) as usize + 10_000;
-    let even_rounds = |options: &Options, sink: &Sink<'_>| {
-        let lifted = rows.of_even(ends);
-        let ground = Ground::new(surface, ends, lifted.as_ref().unwrap_or(&rows), gauge, options);
-        let (mut sheet, start) = ground.lay_evenly(sink)?;
-        if patches.is_some() {
-            sheet.put_on(exact, turned.by);
-        }
-        Some(Laid { sheet, start, spread: 0.0, turn: turned.by, lifted })
+    let on_patches = patches.is_some();
+    let site = Site {
+        turned: &turned,
+        exact,
+        outside,
+        on_patches,
+        ends,
+        rows: &rows,
+        leads,
+        gauge,
+        slit,
+        first,
+        expected,
     };
-    let laid = if even { even_rounds(&options.hurried(), sink) } else { None };
+    // What is to be seen as it was laid stays so.
+    let mends = !options.paper && options.sweeps > 0;
+    let close = stout.is_some() || rows.is_harsh();
+    let laid = if even { site.lay_evenly(&options.hurried(), sink) } else { None };
     let laid = laid.or_else(|| {
         let part = Part { expected, given: first.is_some(), harsh: rows.is_harsh() };
-        let lay = |options: &Options, turn: f64, judge: Judge, sink: &Sink<'_>| {
-            // Where the place of the first row is given, its height is varied.
-            let lifted = first.and_then(|_| Rows::new(surface, [leads[0] + LIFT * turn, leads[1]], gauge));
-            let turned = Turned { surface: turned.surface, by: turned.by + if fixed { 0.0 } else { turn } };
-            let rows = lifted.as_ref().unwrap_or(&rows);
-            let mut ground = Ground {
-                slit,
-                first,
-                expected: expected as usize,
-                ..Ground::new(&turned, ends, rows, gauge, options)
-            };
-            for foot in first.unwrap_or_default() {
-                ground.range[0] = ground.range[0].min(foot.u);
+        let uneven = slit || first.is_some() || options.paper;
+        let lay_evenly = |sink: &Sink<'_>| if uneven { None } else { site.lay_evenly(options, sink) };
+        let mend = |laid: &mut Laid| {
+            if mends {
+                site.untangle(laid, close);
             }
-            let (mut sheet, start, spread) = ground.weave(most, judge, sink)?;
-            // In a hurry they stay on the patches.
-            if options.preset == Preset::Std {
-                sheet.put_on(exact, turned.by);
-            }
-            Some(Laid { sheet, start, spread, turn: turned.by, lifted })
         };
-        let even = |sink: &Sink<'_>| if fixed || options.paper { None } else { even_rounds(options, sink) };
-        tries::best(options, part, sink, lay, even)
+        let weave = |options: &Options, turn, judge, sink: &Sink<'_>| site.weave(options, turn, judge, sink);
+        tries::best(options, part, sink, weave, mend, lay_evenly)
     });
-    let Some(Laid { mut sheet, start, turn, lifted, .. }) = laid else {
+    let Some(mut laid) = laid else {
         if options.preset == Preset::Fast {
             return lay_on(outside, tube, loops, gauge, &options.unhurried(), even, sink);
         }
@@ -221,22 +200,18 @@ fn lay_on(
             "the rows run away: this surface folds over itself, or changes faster than stitches follow";
         return fail(sink, Code::SurfaceBroken, message.into(), GENTLER);
     };
-    let Ground { poles, mut range, .. } = Ground::new(surface, ends, &rows, gauge, options);
-    range[0] = first.unwrap_or_default().iter().fold(range[0], |least, foot| least.min(foot.u));
-    // What is to be seen as it was laid stays so.
-    if !options.paper && options.sweeps > 0 {
-        let close = stout.is_some() || rows.is_harsh();
-        let untangler = Untangler { on: exact, outside, turn, range, start, pole: poles[0], close };
-        let [before, after] = untangler.untangle(&mut sheet);
-        if even && before > 0 && (after > 0 || !tries::is_sound(&sheet)) {
+    if mends {
+        let [before, after] = site.untangle(&mut laid, close);
+        if even && before > 0 && (after > 0 || !tries::is_sound(&laid.sheet)) {
             return lay_on(outside, tube, loops, gauge, options, false, sink);
         }
     }
+    let Laid { sheet, start, turn, lifted, .. } = laid;
     if let Some((code, message, help)) = fault(&sheet, gauge) {
         return fail(sink, code, message, help);
     }
     tell_wider(stout.as_ref(), gauge, &tube.name, sink);
-    Some(finish::graph(&sheet, lifted.as_ref().unwrap_or(&rows), start, poles, turn))
+    Some(finish::graph(&sheet, lifted.as_ref().unwrap_or(&rows), start, site.poles(), turn))
 }
 
 /// Where around the tube the helix begins: `by` where its first row is picked up.
@@ -310,120 +285,4 @@ fn tell_wider(stout: Option<&Stout<'_>>, gauge: &Gauge, part: &str, sink: &mut S
     );
     let help = "use a smaller stitch or a thicker tube there, if it shall keep its proportions";
     sink.push(Diagnostic::new(Code::MadeThicker, message).in_round(part, None).help(help));
-}
-
-/// A finished sheet, the stitches of its first row, and where around the tube the helix began.
-struct Laid {
-    sheet: Sheet,
-    start: usize,
-    /// Rows between the highest and the lowest loop of the last turn.
-    spread: f64,
-    turn: f64,
-    /// Other rows than planned.
-    lifted: Option<Rows>,
-}
-
-impl Laid {
-    fn increases(&self) -> Increases {
-        finish::increases(&self.sheet, self.start)
-    }
-}
-
-/// What all ways of laying stitches share.
-struct Ground<'s> {
-    surface: &'s dyn ParametricSurface,
-    rows: &'s Rows,
-    gauge: &'s Gauge,
-    options: &'s Options,
-    /// The points at the closed ends.
-    poles: [Option<DVec3>; 2],
-    /// Least and greatest u of a node.
-    range: [f64; 2],
-    /// The first row is worked into a slit.
-    slit: bool,
-    /// The first row, where it is picked up.
-    first: Option<&'s [Foot]>,
-    /// About how many stitches there will be.
-    expected: usize,
-}
-
-impl<'s> Ground<'s> {
-    fn new(
-        surface: &'s dyn ParametricSurface,
-        ends: [End; 2],
-        rows: &'s Rows,
-        gauge: &'s Gauge,
-        options: &'s Options,
-    ) -> Self {
-        let pole = |end: End, u: f64| (end == End::Closed).then(|| surface.point(u, 0.0));
-        let poles = [pole(ends[0], 0.0), pole(ends[1], 1.0)];
-        let limit = |end: End, open: f64, row: f64, pole: f64| {
-            if end == End::Closed { pole + POLE_DISTANCE * (row - pole) } else { open }
-        };
-        let range = [
-            limit(ends[0], OVERHANG[0], rows.at(0.0), 0.0),
-            limit(ends[1], OVERHANG[1], rows.at(rows.count), 1.0),
-        ];
-        Self { surface, rows, gauge, options, poles, range, slit: false, first: None, expected: 0 }
-    }
-
-    /// Even repeats on a surface of revolution, settled; with the stitches of the first row. `None` elsewhere.
-    fn lay_evenly(&self, sink: &Sink<'_>) -> Option<(Sheet, usize)> {
-        let Self { surface, rows, options, .. } = *self;
-        let rounds = rows.count as u32;
-        let girths: Vec<f64> =
-            (0..rounds).map(|k| first_row::turn_length(surface, rows, k) / self.gauge.width).collect();
-        let ring = self.poles[0].map(|_| first_row::ring_size(surface, rows, self.gauge));
-        let counts = symmetric::plan_counts(&girths, ring, options.ease())?;
-        let start = counts[0] as usize;
-        let mut sheet = Sheet::new(self.gauge, counts.iter().map(|count| *count as usize).sum());
-        first_row::lay(surface, &mut sheet, first_row::centered_places(counts[0]), rows);
-        symmetric::lay_rounds(surface, &mut sheet, rows, &counts, |done| {
-            sink.step(u64::from(done), u64::from(rounds));
-        });
-        let free = if self.poles[0].is_some() { 0 } else { start };
-        let top = sheet.len() - counts[counts.len() - 1] as usize;
-        let square = EVEN_SQUARENESS[self.poles.iter().filter(|pole| pole.is_none()).count()];
-        let all = Stretch::since(Mark { nodes: free, ..Mark::default() }, &sheet);
-        Relaxer::default().relax(
-            surface,
-            &mut sheet,
-            all,
-            0,
-            Effort { sweeps: options.sweeps_over(all.until.nodes), squareness: options.squareness * square },
-            Ends {
-                range: self.range,
-                ring: self.poles[0].map(|pole| (pole, start)),
-                level: Some(Brink { rows, lag: 0.0, top, firm: Firm::No, tail: true }),
-                opens: false,
-            },
-        );
-        Some((sheet, start))
-    }
-
-    /// Row by row, for any surface; with the stitches of the first row, and the rows between the highest and the lowest loop
-    /// of the last turn. `None` when the rows run away.
-    fn weave(&self, most: usize, judge: Judge, sink: &Sink<'_>) -> Option<(Sheet, usize, f64)> {
-        let Self { surface, rows, options, .. } = *self;
-        let mut sheet = Sheet::new(self.gauge, self.expected);
-        if let Some(first) = self.first {
-            first_row::lay_picked_up(&mut sheet, first);
-        } else if self.poles[0].is_some() {
-            let ring = first_row::ring_size(surface, rows, self.gauge);
-            first_row::lay(surface, &mut sheet, first_row::centered_places(ring), rows);
-        } else {
-            let places =
-                first_row::even_places(surface, rows, self.gauge.width, if self.slit { 2 } else { 1 });
-            first_row::lay(surface, &mut sheet, places.into_iter(), rows);
-        }
-        let start = sheet.len();
-        let mut weaver = Weaver::new(surface, rows, options, sheet, self.poles, self.range, most);
-        match weaver.run(judge, |done, total| sink.step(done, total)) {
-            Outcome::Done => {
-                let spread = weaver.spread();
-                Some((weaver.sheet, start, spread))
-            }
-            Outcome::Runaway | Outcome::Outdone => None,
-        }
-    }
 }

@@ -34,6 +34,8 @@ pub(crate) struct Rows {
     tail: f64,
     /// Farthest against closest distance of two rows, on average.
     unevenness: f64,
+    /// The farthest distance of two rows from each knot on, in their spacing.
+    farthest: Vec<f32>,
     /// Number of rows; whole.
     pub count: f64,
 }
@@ -51,16 +53,20 @@ impl Rows {
         gauge: &Gauge,
     ) -> Option<Self> {
         let height = gauge.height;
-        let Table { mut knots, ahead, unevenness } = table(surface, height, MEAN_SHARE)?;
-        if ahead > MOST_AHEAD && mean_girth(surface, &knots) > LONG_ROUND * gauge.width {
-            knots = table(surface, height, MEAN_SHARE * MOST_AHEAD / ahead)?.knots;
-        }
+        let first = table(surface, height, MEAN_SHARE)?;
+        let (ahead, unevenness) = (first.ahead, first.unevenness);
+        let Table { knots, farthest, .. } =
+            if ahead > MOST_AHEAD && mean_girth(surface, &first.knots) > LONG_ROUND * gauge.width {
+                table(surface, height, MEAN_SHARE * MOST_AHEAD / ahead)?
+            } else {
+                first
+            };
         let last = knots.len() - 1;
         let partial = (1.0 - knots[last - 1]) / (knots[last] - knots[last - 1]);
         let total = last as f64 - 1.0 + partial;
         let count = (total - lead - tail).round().max(1.0);
         let scale = total / (count + lead + tail);
-        (total >= 0.75).then_some(Self { knots, scale, lead, tail, unevenness, count })
+        (total >= 0.75).then_some(Self { knots, scale, lead, tail, unevenness, farthest, count })
     }
 
     /// One row more, closer together, where even rounds that close would else come out short; `None` elsewhere.
@@ -70,12 +76,21 @@ impl Rows {
         let total = self.scale * (self.count + off_ends);
         let count = (total - off_ends + lost).round().max(1.0);
         let scale = total / (count + off_ends);
-        (count > self.count).then(|| Self { knots: self.knots.clone(), scale, count, ..*self })
+        let (knots, farthest) = (self.knots.clone(), self.farthest.clone());
+        (count > self.count).then_some(Self { knots, scale, farthest, count, ..*self })
     }
 
     /// True where rows lie far closer on one side than on the other nearly everywhere, as in a sharp bend.
     pub(crate) fn is_harsh(&self) -> bool {
         self.unevenness > HARSH
+    }
+
+    /// The farthest distance of neighboring rows around the tube between two rows, in their spacing.
+    pub(crate) fn farthest(&self, between: [f64; 2]) -> f64 {
+        let last = self.farthest.len() - 1;
+        let [first, end] = between.map(|tau| (((tau + self.lead) * self.scale).max(0.0) as usize).min(last));
+        let all = &self.farthest[first..=end.max(first)];
+        f64::from(all.iter().copied().fold(0.0, f32::max))
     }
 
     /// The surface parameter of row `tau`.
@@ -131,6 +146,7 @@ struct Table {
     /// rows on the other side cannot hold it back; where they lie farther apart, short rows keep it level.
     ahead: f64,
     unevenness: f64,
+    farthest: Vec<f32>,
 }
 
 /// The table of rows with a share of the mean distance in their spacing. `None` when the surface has no length.
@@ -146,6 +162,7 @@ fn table(surface: &dyn ParametricSurface, height: f64, mean_share: f64) -> Optio
     let mut few = [Jet::default(); FEW];
     let mut all = [Jet::default(); AROUND];
     let mut unevenness = 0.0;
+    let mut farthest = Vec::new();
     while u < 1.0 {
         // A few looks lead to the middle of the row, where all are taken.
         surface.ring(inside(u), 0.0, &mut few);
@@ -160,11 +177,12 @@ fn table(surface: &dyn ParametricSurface, height: f64, mean_share: f64) -> Optio
         u += step.min(1.0);
         let [least, most] = [f64::min, f64::max].map(|of| speeds.iter().copied().reduce(of).unwrap_or(1.0));
         unevenness += most / least;
+        farthest.push((most / spacing) as f32);
         for (ahead, speed) in ahead.iter_mut().zip(speeds) {
             *ahead = (*ahead + 1.0 - speed / spacing).max(0.0);
         }
         knots.push(u);
     }
     let unevenness = unevenness / (knots.len() - 1) as f64;
-    Some(Table { knots, ahead: ahead.into_iter().fold(0.0, f64::max), unevenness })
+    Some(Table { knots, ahead: ahead.into_iter().fold(0.0, f64::max), unevenness, farthest })
 }

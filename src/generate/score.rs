@@ -8,6 +8,11 @@ use glam::DVec3;
 const USUAL_LENGTH: f64 = 0.04;
 const USUAL_SPREAD: f64 = 0.055;
 const USUAL_SKEW: f64 = 0.09;
+/// Mean length error and skew that no one overlooks, and the price of more.
+const MOST_LENGTH: f64 = 0.05;
+const MOST_SKEW: f64 = 0.12;
+const STRETCHED: f64 = 50.0;
+const SLANTED: f64 = 30.0;
 /// A signed mean over this makes the whole too large or too small; its price.
 const BIAS_FREE: f64 = 0.004;
 const BIAS: f64 = 100.0;
@@ -16,9 +21,9 @@ const USUAL_WORDS: f64 = 0.12;
 const WORDS: f64 = 0.6;
 /// Rows between the highest and the lowest loop of the last turn that are free, and the price of one more.
 const LEVEL_FREE: f64 = 0.75;
-const LEVEL: f64 = 0.3;
+const LEVEL: f64 = 0.7;
 /// Price of increases that stand on others without need, as a share of all.
-const STACKED: f64 = 0.5;
+const STACKED: f64 = 2.0;
 /// Price of an inverted tile as a share of all tiles, and of one at all.
 const INVERTED: f64 = 40.0;
 const ANY_INVERTED: f64 = 2.0;
@@ -32,6 +37,8 @@ pub(super) const FEW_OF: usize = 10_000;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Score {
     pub total: f64,
+    /// The total of edges and tiles alone.
+    pub fit: f64,
     pub inverted: usize,
     /// Mean absolute length error, and mean skew.
     pub length: f64,
@@ -46,7 +53,9 @@ impl Score {
     pub(super) fn of(sheet: &Sheet, ease: f64) -> Self {
         let fit = Self::of_fit(sheet);
         let stacked = stacked(sheet);
-        Self { total: fit.total + STACKED * stacked, stacked, ..fit }.with_words(sheet, ease)
+        let over =
+            STRETCHED * (fit.length - MOST_LENGTH).max(0.0) + SLANTED * (fit.skew - MOST_SKEW).max(0.0);
+        Self { total: fit.total + over + STACKED * stacked, stacked, ..fit }.with_words(sheet, ease)
     }
 
     /// The same with so much weight on few words: runs of stitches, and four words for each short row.
@@ -129,7 +138,7 @@ impl Fit {
         if inverted > 0 {
             total += ANY_INVERTED + INVERTED * share(inverted as f64, quads);
         }
-        Score { total, inverted, length, skew, stacked: 0.0 }
+        Score { total, fit: total, inverted, length, skew, stacked: 0.0 }
     }
 }
 
@@ -137,25 +146,6 @@ fn length_error(sheet: &Sheet, edge: &Edge) -> f64 {
     let rest = if edge.kind == EdgeKind::Wale { sheet.height } else { sheet.width };
     let d = sheet.point[edge.b as usize].distance(sheet.point[edge.a as usize]);
     d / rest - 1.0
-}
-
-/// The 95th percentile of absolute length errors.
-pub(super) fn p95(sheet: &Sheet) -> f64 {
-    let mut errors: Vec<f64> = sheet.edges.iter().map(|edge| length_error(sheet, edge).abs()).collect();
-    let nth = errors.len() * 95 / 100;
-    if nth < errors.len() { *errors.select_nth_unstable_by(nth, f64::total_cmp).1 } else { 0.0 }
-}
-
-/// The area of all tiles but turns and those of three corners.
-pub(super) fn area(sheet: &Sheet) -> f64 {
-    let half = |(area, normal): (f64, DVec3)| 0.5 * area / normal.length();
-    sheet
-        .quads
-        .iter()
-        .filter_map(|quad| twice_area(sheet, quad))
-        .map(half)
-        .filter(|area| area.is_finite())
-        .sum()
 }
 
 /// Mean absolute length error of one edge of so many.

@@ -26,31 +26,27 @@ const DEAD_BAND: f64 = 0.1;
 /// How dear an increase beside one of the row below is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Ridge {
-    /// As much as a few stitches' way to a place that is clear.
+    /// So much that any clear place is better, also the first base of a row, or one beside another increase.
     #[default]
-    Usual,
+    Dear,
     /// Little: other things matter more.
-    Low,
-    /// So much that any clear place is better: the first base of a row, or one with so few bases to the last increase.
-    Steep { apart: usize },
+    Cheap,
 }
 
 impl Ridge {
     fn price(self) -> f64 {
         match self {
-            Self::Usual => RIDGE,
-            Self::Low => LOW_RIDGE,
-            Self::Steep { .. } => STEEP_RIDGE,
+            Self::Dear => DEAR_RIDGE,
+            Self::Cheap => CHEAP_RIDGE,
         }
-    }
-
-    pub(crate) fn is_steep(self) -> bool {
-        matches!(self, Self::Steep { .. })
     }
 
     /// Longest distance between shapings, in bases.
     fn cooldown(self) -> usize {
-        if let Self::Steep { apart } = self { apart } else { COOLDOWN }
+        match self {
+            Self::Dear => 0,
+            Self::Cheap => COOLDOWN,
+        }
     }
 }
 
@@ -110,9 +106,8 @@ const WAITING_MOST: f64 = 3.6;
 const USUAL_ROW: f64 = 15.0;
 const DEARER: f64 = 2.0;
 /// Prices of an increase beside one of the row below; and of any shaping beside another with full ease.
-const RIDGE: f64 = 4.0;
-const LOW_RIDGE: f64 = 0.5;
-const STEEP_RIDGE: f64 = 20.0;
+const DEAR_RIDGE: f64 = 20.0;
+const CHEAP_RIDGE: f64 = 0.5;
 const PLAIN_RIDGE: f64 = 3.0;
 /// Mean squared distance from where a shaping belongs that evenly spread ones may have more with full ease.
 const EVEN: f64 = 0.6;
@@ -189,12 +184,12 @@ impl Staircase {
         // Levels that still have a way worth following.
         let mut live = [REACH as usize; 2];
         let (mut middle, mut cheapest) = (0, 0.0);
-        let steep = taste.ridge.is_steep();
-        let hopeless_by = if steep { HOPELESS + 2.0 * taste.ridge.price() } else { HOPELESS.max(3.0 * full) };
+        let dear = taste.ridge == Ridge::Dear;
+        let hopeless_by = (HOPELESS + 2.0 * taste.ridge.price()).max(3.0 * full);
         let bases = self.curve.iter().zip(&self.whole).zip(&mut self.reached);
         for (i, ((curve, here), reached)) in bases.enumerate() {
             let price = |shaping: Shaping| {
-                let bars = i == 0 && (shaping == Shaping::Dec || !steep) || !allowed(shaping, below, i);
+                let bars = i == 0 && (shaping == Shaping::Dec || !dear) || !allowed(shaping, below, i);
                 let marked = shaping == Shaping::Dec && taste.marker == Some(i);
                 if bars || marked { LOST } else { full + taste.stacking(shaping, below, i) }
             };
@@ -364,7 +359,7 @@ mod tests {
     fn the_net_count_follows_the_width() {
         assert_eq!(net(&[1.2; 30]), (6, 0));
         assert_eq!(net(&[0.8; 30]), (0, 6));
-        assert_eq!(net(&[2.0; 6]), (5, 0), "the first base of a row is never shaped");
+        assert_eq!(net(&[2.0; 6]), (5, 0), "the foot of the first base is where it belongs");
     }
 
     #[test]
@@ -381,39 +376,38 @@ mod tests {
         // All of one stitch is missing at one place.
         let mut gaps = [1.0; 30];
         gaps[15] = 2.0;
-        let place = |below: &[Shaped], taste: Taste| {
+        let place = |gaps: &[f64], below: &[Shaped], taste: Taste| {
             let mut staircase = Staircase::default();
-            staircase.solve(&gaps, below, taste);
+            staircase.solve(gaps, below, taste);
             staircase.plan.iter().position(|shaping| *shaping == Shaping::Inc)
         };
         let mut below = [Shaped::No; 30];
-        assert_eq!(place(&below, Taste::default()), Some(15));
+        assert_eq!(place(&gaps, &below, Taste::default()), Some(15));
         below[15..17].fill(Shaped::Inc);
-        let aside = place(&below, Taste::default()).expect("worked somewhere");
+        let aside = place(&gaps, &below, Taste::default()).expect("worked somewhere");
         assert!([13, 18].contains(&aside), "{aside}");
-        assert_eq!(place(&below, Taste { ridge: Ridge::Low, ..Taste::default() }), Some(15));
+        assert_eq!(place(&gaps, &below, Taste { ridge: Ridge::Cheap, ..Taste::default() }), Some(15));
         below.fill(Shaped::Inc);
-        assert!(place(&below, Taste::default()).is_some(), "where there is no other place, it stays");
+        gaps[15] = 4.0;
+        assert!(place(&gaps, &below, Taste::default()).is_some(), "where there is no other place, it stays");
     }
 
     #[test]
-    fn steep_ridges_are_gone_round_as_far_as_it_takes() {
+    fn ridges_are_gone_round_as_far_as_it_takes() {
         // Two stitches are missing at one place of a row that is clear at its beginning only.
-        let increases = |place: usize, clear: usize, ridge: Ridge, before: Shaped| {
+        let increases = |place: usize, clear: usize, before: Shaped| {
             let mut gaps = [1.0; 40];
             gaps[place..place + 2].fill(2.0);
             let mut below = [Shaped::Inc; 40];
             below[..=clear].fill(Shaped::No);
             let mut staircase = Staircase::default();
-            staircase.solve(&gaps, &below, Taste { ridge, before, ..Taste::default() });
+            staircase.solve(&gaps, &below, Taste { before, ..Taste::default() });
             let places = 0..gaps.len();
             places.filter(|i| staircase.plan[*i] == Shaping::Inc).collect::<Vec<_>>()
         };
-        assert!(increases(9, 5, Ridge::Usual, Shaped::No).iter().any(|i| *i > 5));
-        let steep = |apart| increases(9, 5, Ridge::Steep { apart }, Shaped::No);
-        assert_eq!([steep(0), steep(1), steep(2)], [[3, 4], [2, 4], [1, 4]]);
-        assert_eq!(increases(4, 2, Ridge::Steep { apart: 0 }, Shaped::No), [0, 1]);
-        let beside = increases(4, 2, Ridge::Steep { apart: 0 }, Shaped::Inc);
+        assert_eq!(increases(9, 5, Shaped::No), [3, 4]);
+        assert_eq!(increases(4, 2, Shaped::No), [0, 1]);
+        let beside = increases(4, 2, Shaped::Inc);
         assert!(beside[0] > 0, "the base before is a neighbor too: {beside:?}");
     }
 }

@@ -30,6 +30,8 @@ const LEVELING: f64 = 0.858;
 const LEVELING_MOST: f64 = 0.313;
 /// Added to missing heights before short rows are planned: it is better to be a little early.
 const EAGER: f64 = 0.328;
+/// Distance of two rows, in stitch heights, over which short rows will lie between them.
+const FAR: f64 = 1.5;
 /// Share of the usual price of short-row ends in the last two rows, so that the top comes out level.
 const LAST_ROWS_PRICE: f64 = 0.4;
 const LAST_ROWS: f64 = 2.0;
@@ -87,6 +89,7 @@ pub(crate) struct Weaver<'s> {
     feet: Vec<Foot>,
     gaps: Vec<f64>,
     missing: Vec<f64>,
+    ahead: Vec<f64>,
     below: Vec<Shaped>,
     staircase: Staircase,
     planner: Planner,
@@ -124,11 +127,12 @@ impl<'s> Weaver<'s> {
             end: if poles[1].is_some() { End::Closed } else { End::Open },
             opens: false,
             tail: true,
-            ridge: Ridge::Usual,
+            ridge: Ridge::default(),
             most,
             feet: Vec::new(),
             gaps: Vec::new(),
             missing: Vec::new(),
+            ahead: Vec::new(),
             below: Vec::new(),
             staircase: Staircase::default(),
             planner: Planner::default(),
@@ -155,7 +159,8 @@ impl<'s> Weaver<'s> {
                 break;
             }
             let before = self.behind.first().map_or(Shaped::No, |id| self.sheet.shaped[*id as usize]);
-            let taste = Taste { ease: self.options.ease(), marker, ridge: judge.ridge, before };
+            let ease = self.options.ease();
+            let taste = Taste { ease, marker, ridge: judge.ridge, before };
             let (tops, top_base) = self.work(&bases[..worked], taste);
             self.settle_window();
             let marked = marker.and_then(|base| top_base.iter().position(|id| *id == bases[base]));
@@ -216,10 +221,33 @@ impl<'s> Weaver<'s> {
     }
 
     /// How much of the ring the next batch takes.
-    fn batch_length(&self) -> usize {
+    fn batch_length(&mut self) -> usize {
         let n = self.ring.len();
         let whole = !self.options.short_rows || self.options.paper;
-        if whole || self.part_batch || self.marks.is_empty() { n } else { batch::length(&self.missing) }
+        if whole || self.part_batch || self.marks.is_empty() {
+            return n;
+        }
+        self.look_ahead();
+        batch::length(&self.ahead)
+    }
+
+    /// Missing heights of the open loops, and what the next row adds where rows lie so far apart that short rows fill up between
+    /// them soon.
+    fn look_ahead(&mut self) {
+        self.ahead.clear();
+        self.ahead.extend_from_slice(&self.missing);
+        let ends = [self.ring.first(), self.ring.last()];
+        let [first, last] = ends.map(|id| id.map_or(0.0, |id| self.sheet.v[*id as usize]));
+        if self.rows.farthest([first, last + 1.0]) <= FAR {
+            return;
+        }
+        for (ahead, id) in self.ahead.iter_mut().zip(&self.ring) {
+            let v = self.sheet.v[*id as usize];
+            let next = self.rows.at(v + 1.0).min(1.0);
+            let speed = row_speed(&self.surface.jet(next, v));
+            let apart = (next - self.rows.at(v)) * speed / self.sheet.height;
+            *ahead += (apart - FAR).max(0.0);
+        }
     }
 
     /// Feet of the stitches over the bases: an offset of the front, leveled a little. Returns how many bases still lie below
@@ -481,7 +509,7 @@ impl<'s> Weaver<'s> {
                     let (own, left) =
                         (self.sheet.shaped[bases[i] as usize], self.sheet.shaped[bases[i - 1] as usize]);
                     let beside = self.beside_increase(&bases[i - 1..i + 2]);
-                    let most = if self.ridge.is_steep() { f64::INFINITY } else { PASS_RIDGE };
+                    let most = if self.ridge == Ridge::Dear { f64::INFINITY } else { PASS_RIDGE };
                     let ridge = if beside { most } else { 0.0 };
                     if error > threshold + ridge && own != Shaped::Dec {
                         plan = Shaping::Inc;
