@@ -1,6 +1,6 @@
 //! Where a branch leaves its parent: the rim in which the two tubes meet, and the part of the branch beyond it.
 
-use super::solid::{Foot, Solid};
+use super::solid::{Clear, Foot, Side, Solid, points};
 use super::stack::Stack;
 use super::{End, Jet, ParametricSurface};
 use crate::math;
@@ -29,8 +29,10 @@ const TOUCH: f64 = 1e-3;
 const RIM: f64 = 0.1;
 /// Reach (stitch widths) over which a rim is rounded: yarn makes no finer corners.
 const ROUNDED: f64 = 1.2;
-/// Places on a tube at which it is asked whether it runs into another one.
-const CROSSING: [u32; 2] = [40, 24];
+/// Halvings by which the way out of the parent is found between two looks, and the distance (in u) from it at which rounding
+/// decides on which side a place lies.
+const HALVINGS: u32 = 40;
+const ROUNDING: f64 = 2e-15;
 
 /// Why a tube is no branch of another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,27 +81,28 @@ impl<S: ParametricSurface> Branch<S> {
         let girth = super::girth(&surface, 0.0, 32);
         let length = super::length_along(&surface, 0.0, 0.0..1.0, 8).max(1e-9);
         let back = BACKWARD * girth / length;
-        let ways: Vec<Way> =
-            (0..AROUND).map(|k| Way::out(&surface, parent, k as f64 / AROUND as f64, back)).collect();
+        let turn = |k: usize| k as f64 / AROUND as f64;
+        let all = (0..AROUND).into_par_iter().with_min_len(TOGETHER);
+        let ways: Vec<Way> = all.map(|k| Way::out(&surface, parent, turn(k), back)).collect();
         let mut outs = Vec::with_capacity(AROUND);
-        let mut least = f64::INFINITY;
         for way in &ways {
             match *way {
                 Way::Out(u, foot) => outs.push((u, foot)),
-                Way::Never(distance) => least = least.min(distance),
+                Way::Never => {}
                 Way::OpenEnd => return Err(Misfit::OpenEnd),
                 Way::Inside => return Err(Misfit::Inside),
             }
         }
         if outs.is_empty() {
-            return Err(Misfit::Apart { distance: least });
+            let lines = (0..AROUND).map(|k| distance(&surface, parent, turn(k), back));
+            return Err(Misfit::Apart { distance: lines.fold(f64::INFINITY, f64::min) });
         }
         if outs.len() < AROUND {
             return Err(Misfit::Beside { share: 1.0 - outs.len() as f64 / AROUND as f64 });
         }
         let places: Vec<f64> = outs.iter().map(|out| out.0).collect();
         let sharp = Self { rim: with_slopes(&places), mean: mean(&places), ease: 0.0, phase: 0.0, surface };
-        if let Some(at) = points(&sharp, RIM).find(|point| parent.contains(*point, TOUCH)) {
+        if let Some(at) = parent.first_within(points(&sharp, RIM), TOUCH) {
             return Err(Misfit::Returns { at });
         }
         let feet: Vec<Foot> = outs.iter().map(|out| out.1).collect();
@@ -291,53 +294,51 @@ impl<S: ParametricSurface> ParametricSurface for Branch<S> {
     }
 }
 
-/// Where `tube` runs into `other`, if it does; in mm.
-pub(crate) fn crossing(tube: &dyn ParametricSurface, other: &Solid<'_>) -> Option<DVec3> {
-    points(tube, 0.0).find(|point| other.contains(*point, TOUCH))
-}
-
-/// Points all over a tube, from a share of its length on.
-fn points(tube: &(impl ParametricSurface + ?Sized), from: f64) -> impl Iterator<Item = DVec3> + '_ {
-    let [along, around] = CROSSING;
-    (0..=along).flat_map(move |i| {
-        let u = from + (1.0 - from) * f64::from(i) / f64::from(along);
-        (0..around).map(move |k| tube.point(u, f64::from(k) / f64::from(around)))
-    })
+/// Where a tube runs into another one, if it does; in mm.
+pub(crate) fn crossing(tube: &Solid<'_>, other: &Solid<'_>) -> Option<DVec3> {
+    other.first_within(tube.all_over().iter().copied(), TOUCH)
 }
 
 /// How one line of a branch leaves its parent.
 enum Way {
     /// At this u, over this place of the parent.
     Out(f64, Foot),
-    /// It never is inside; the least distance.
-    Never(f64),
+    /// It never is inside.
+    Never,
     OpenEnd,
     Inside,
 }
 
+/// Places at which a line is looked at that begins outside: backward, for a branch that begins on the surface goes back into
+/// its parent, and then forward, for only one that begins apart reaches it later.
+fn looks(back: f64) -> impl Iterator<Item = f64> {
+    let step = 1.0 / f64::from(ALONG);
+    let backward = (1..=ALONG).map(move |k| -back * f64::from(k) * step);
+    backward.chain((1..ALONG).map(move |k| f64::from(k) * step))
+}
+
+/// Least distance of a line from a parent that it does not touch.
+fn distance(surface: &dyn ParametricSurface, parent: &Solid<'_>, v: f64, back: f64) -> f64 {
+    let places = std::iter::once(0.0).chain(looks(back));
+    places.map(|u| parent.foot(surface.point(u, v)).distance.abs()).fold(f64::INFINITY, f64::min)
+}
+
 impl Way {
     fn out(surface: &dyn ParametricSurface, parent: &Solid<'_>, v: f64, back: f64) -> Self {
-        let at = |u: f64| parent.foot(surface.point(u, v));
-        let first = at(0.0);
-        let inside = |foot: &Foot| foot.distance < 0.0 && !foot.beyond;
-        let mut least = first.distance.abs();
+        let mut clear = Clear::NOWHERE;
+        let mut at = |u: f64| parent.side(surface.point(u, v), &mut clear);
         let step = 1.0 / f64::from(ALONG);
         let mut last = 0.0;
-        if !inside(&first) {
-            // A branch that begins on the surface goes back into it, and only one that begins outside reaches it later.
-            let backward = (1..=ALONG).map(|k| -back * f64::from(k) * step);
-            let forward = (1..ALONG).map(|k| f64::from(k) * step);
+        if at(0.0) != Side::Inside {
             let mut out = 0.0;
             let mut found = false;
-            for u in backward.chain(forward) {
+            for u in looks(back) {
                 if u > 0.0 && out < 0.0 {
                     out = 0.0;
                 }
-                let foot = at(u);
-                least = least.min(foot.distance.abs());
-                if inside(&foot) {
+                if at(u) == Side::Inside {
                     if u < 0.0 {
-                        return Self::between(parent, surface, v, u, out);
+                        return Self::between(parent, surface, v, [u, out]);
                     }
                     (found, last) = (true, u);
                     break;
@@ -345,19 +346,16 @@ impl Way {
                 out = u;
             }
             if !found {
-                return Self::Never(least);
+                return Self::Never;
             }
         }
         let start = (last / step) as u32 + 1;
         for u in (start..=ALONG).map(|k| f64::from(k) * step) {
-            let foot = at(u);
-            if foot.beyond {
-                return Self::OpenEnd;
+            match at(u) {
+                Side::Beyond => return Self::OpenEnd,
+                Side::Outside => return Self::between(parent, surface, v, [last, u]),
+                Side::Inside => last = u,
             }
-            if foot.distance >= 0.0 {
-                return Self::between(parent, surface, v, last, u);
-            }
-            last = u;
         }
         Self::Inside
     }
@@ -367,18 +365,29 @@ impl Way {
         parent: &Solid<'_>,
         surface: &dyn ParametricSurface,
         v: f64,
-        mut inside: f64,
-        mut outside: f64,
+        [mut inside, mut outside]: [f64; 2],
     ) -> Self {
         let mut foot = parent.foot(surface.point(outside, v));
-        for _ in 0..40 {
+        let place = parent.pierced(|u| surface.jet(u, v), [inside, outside], &foot);
+        // The interval is halved until rounding stops it, looking only where the place found does not tell the side.
+        for _ in 0..HALVINGS {
             let middle = 0.5 * (inside + outside);
-            let next = parent.refine(surface.point(middle, v), foot.u, foot.v);
-            if next.distance < 0.0 {
-                inside = middle;
-            } else {
-                (outside, foot) = (middle, next);
+            match place {
+                Some((out, ..)) if middle < out - ROUNDING => inside = middle,
+                Some((out, ..)) if middle > out + ROUNDING => outside = middle,
+                _ => {
+                    let (u, v_on) = place.map_or((foot.u, foot.v), |(_, u, v)| (u, v));
+                    let next = parent.refine(surface.point(middle, v), u, v_on);
+                    if next.distance < 0.0 {
+                        inside = middle;
+                    } else {
+                        (outside, foot) = (middle, next);
+                    }
+                }
             }
+        }
+        if let Some((_, u, v_on)) = place {
+            foot = parent.refine(surface.point(outside, v), u, v_on);
         }
         if foot.beyond { Self::OpenEnd } else { Self::Out(outside, foot) }
     }

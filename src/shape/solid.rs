@@ -4,15 +4,29 @@ use super::{End, Jet, ParametricSurface};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::fmt;
+use std::sync::{Arc, OnceLock};
 
 /// Places around the tube in the table of its points.
 const AROUND: u32 = 32;
 /// Least and greatest number of places along it.
 const ALONG: [u32; 2] = [16, 256];
+/// Places of a row of the table that have a box together.
+const BLOCK: usize = 8;
 /// Fewest of all places that are worth being handed to another thread.
 const TOGETHER: usize = 256;
+/// Places along a tube and around it at which it is asked whether it runs into another one.
+const CROSSING: [u32; 2] = [40, 24];
+/// Cosine to the normal at the nearest place of the table by which a point is certainly on that side of the surface.
+const STEEP: f64 = 0.5;
+/// Rows of the table next to an open end where that is not certain.
+const EDGE: usize = 2;
 /// Steps that refine a foot.
 const STEPS: u32 = 8;
+/// Steps that find where a line comes through the surface, how small they are (in u and v) when one more is enough, and the
+/// least sine at which a line may cross.
+const MOST_STEPS: u32 = 12;
+const NEARLY: f64 = 1e-8;
+const FLAT: f64 = 0.02;
 /// Nearest to an end that derivatives are taken, for a pole has none.
 const INSET: f64 = 1e-5;
 
@@ -20,14 +34,191 @@ const INSET: f64 = 1e-5;
 pub(crate) struct Solid<'s> {
     surface: &'s dyn ParametricSurface,
     ends: [End; 2],
-    grid: Vec<(f64, f64, DVec3)>,
-    low: DVec3,
-    high: DVec3,
+    table: Arc<Table>,
 }
 
 impl fmt::Debug for Solid<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Solid").field("low", &self.low).field("high", &self.high).finish_non_exhaustive()
+        f.debug_struct("Solid")
+            .field("low", &self.table.low)
+            .field("high", &self.table.high)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What is known of a tube without looking at its surface again: all that asks about one tube can share it.
+pub(crate) struct Table {
+    /// Rows of so many places, evenly from the start to the end; one more than `along`.
+    points: Vec<DVec3>,
+    along: u32,
+    /// Around each row, and around each block of it.
+    rows: Vec<Bounds>,
+    blocks: Vec<Bounds>,
+    low: DVec3,
+    high: DVec3,
+    /// No place of the surface is farther than that from one of the table.
+    cell: f64,
+    /// Balls around the open ends.
+    openings: Vec<(DVec3, f64)>,
+    /// Points all over the tube, once they are asked for.
+    all_over: OnceLock<Vec<DVec3>>,
+}
+
+/// A box.
+#[derive(Clone, Copy)]
+struct Bounds {
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Bounds {
+    fn of(points: &[DVec3]) -> Self {
+        let (low, high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        points
+            .iter()
+            .fold(Self { low, high }, |it, point| Self { low: it.low.min(*point), high: it.high.max(*point) })
+    }
+
+    /// Square of the distance from a point, rounded like that to a point inside: never greater.
+    fn distance_squared(&self, point: DVec3) -> f64 {
+        (self.low - point).max(point - self.high).max(DVec3::ZERO).length_squared()
+    }
+}
+
+impl Table {
+    /// Tabulates a tube.
+    pub(crate) fn new(surface: &dyn ParametricSurface, ends: [End; 2]) -> Self {
+        let girth = super::girth(surface, 0.5, 16).max(1e-6);
+        let length = super::length_along(surface, 0.0, 0.0..1.0, 8);
+        let along =
+            (f64::from(AROUND) * length / girth).clamp(f64::from(ALONG[0]), f64::from(ALONG[1])) as u32;
+        let all = (0..(along + 1) * AROUND).into_par_iter().with_min_len(TOGETHER);
+        let points: Vec<DVec3> = all
+            .map(|index| {
+                let (u, v) = place(index as usize, along);
+                surface.point(u, v)
+            })
+            .collect();
+        let rows: Vec<Bounds> = points.chunks(AROUND as usize).map(Bounds::of).collect();
+        let blocks = points.chunks(BLOCK).map(Bounds::of).collect();
+        let (low, high) = rows
+            .iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |it, row| (it.0.min(row.low), it.1.max(row.high)));
+        // The table cuts corners of the body; its box gets a little room for them.
+        let room = DVec3::splat(0.05 * (high - low).max_element().max(1e-6));
+        let ring = |row: &[DVec3]| {
+            let center = row.iter().sum::<DVec3>() / row.len() as f64;
+            (center, row.iter().map(|point| point.distance(center)).fold(0.0, f64::max))
+        };
+        let each: Vec<&[DVec3]> = points.chunks(AROUND as usize).collect();
+        let cell = each.windows(2).map(|pair| widest_cell(pair[0], pair[1])).fold(0.0, f64::max);
+        let edges = [each.first(), each.last()].into_iter().flatten().zip(ends);
+        let open = edges.filter(|(_, end)| *end == End::Open);
+        // A surface bulges out of its chords.
+        let openings =
+            open.map(|(row, _)| ring(row)).map(|(center, radius)| (center, 1.1 * radius)).collect();
+        Self {
+            along,
+            rows,
+            blocks,
+            low: low - room,
+            high: high + room,
+            cell: 1.1 * cell,
+            openings,
+            all_over: OnceLock::new(),
+            points,
+        }
+    }
+
+    /// The place nearest to a point, the first of those alike, and the square of its distance.
+    fn nearest(&self, point: DVec3) -> (usize, f64) {
+        let mut first = (f64::INFINITY, 0);
+        for (row, bounds) in self.rows.iter().enumerate() {
+            let distance = bounds.distance_squared(point);
+            if distance < first.0 {
+                first = (distance, row);
+            }
+        }
+        let mut best = (usize::MAX, f64::INFINITY);
+        let mut look = |row: usize| {
+            let blocks = AROUND as usize / BLOCK;
+            for block in row * blocks..(row + 1) * blocks {
+                if self.blocks[block].distance_squared(point) > best.1 {
+                    continue;
+                }
+                let begin = block * BLOCK;
+                for (k, place) in self.points[begin..begin + BLOCK].iter().enumerate() {
+                    let distance = place.distance_squared(point);
+                    if distance < best.1 || (distance == best.1 && begin + k < best.0) {
+                        best = (begin + k, distance);
+                    }
+                }
+            }
+            best.1
+        };
+        let mut least = look(first.1);
+        for (row, bounds) in self.rows.iter().enumerate() {
+            if row != first.1 && bounds.distance_squared(point) <= least {
+                least = look(row);
+            }
+        }
+        if best.0 == usize::MAX { (0, f64::INFINITY) } else { best }
+    }
+
+    /// Cosine between the way to a point and the outward normal at a place of the table.
+    fn steepness(&self, index: usize, point: DVec3) -> f64 {
+        let around = AROUND as usize;
+        let (row, k) = (index / around, index % around);
+        let at = |row: usize, k: usize| self.points[row * around + k % around];
+        let du = at((row + 1).min(self.along as usize), k) - at(row.saturating_sub(1), k);
+        let dv = at(row, k + 1) - at(row, k + around - 1);
+        let (normal, way) = (du.cross(dv), point - self.points[index]);
+        normal.dot(way) / (normal.length() * way.length())
+    }
+}
+
+/// u and v of a place of a table.
+fn place(index: usize, along: u32) -> (f64, f64) {
+    let index = index as u32;
+    let share = |k: u32, of: u32| f64::from(k) / f64::from(of);
+    (share(index / AROUND, along), share(index % AROUND, AROUND))
+}
+
+/// Half of the longest diagonal of the cells between two rows.
+fn widest_cell(row: &[DVec3], next: &[DVec3]) -> f64 {
+    let count = row.len();
+    let cells = (0..count).map(|k| {
+        let other = if k + 1 == count { 0 } else { k + 1 };
+        row[k].distance_squared(next[other]).max(row[other].distance_squared(next[k]))
+    });
+    0.5 * cells.fold(0.0, f64::max).sqrt()
+}
+
+/// Where a point lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    /// In the body.
+    Inside,
+    /// Out of it.
+    Outside,
+    /// Beyond an open end, where the surface says nothing of inside and outside.
+    Beyond,
+}
+
+/// A ball that the surface does not run through: all its points lie on one side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Clear {
+    center: DVec3,
+    radius: f64,
+    side: Side,
+}
+
+impl Clear {
+    /// One without points.
+    pub(crate) const NOWHERE: Self = Self { center: DVec3::ZERO, radius: 0.0, side: Side::Outside };
+
+    fn holds(&self, point: DVec3) -> bool {
+        point.distance_squared(self.center) < self.radius * self.radius
     }
 }
 
@@ -45,48 +236,36 @@ pub(crate) struct Foot {
 }
 
 impl<'s> Solid<'s> {
-    /// Tabulates a tube.
+    /// A tube and its table.
     pub(crate) fn new(surface: &'s dyn ParametricSurface, ends: [End; 2]) -> Self {
-        let girth = super::girth(surface, 0.5, 16).max(1e-6);
-        let length = super::length_along(surface, 0.0, 0.0..1.0, 8);
-        let along =
-            (f64::from(AROUND) * length / girth).clamp(f64::from(ALONG[0]), f64::from(ALONG[1])) as u32;
-        let place = |index: u32| {
-            let share = |k: u32, of: u32| f64::from(k) / f64::from(of);
-            let (u, v) = (share(index / AROUND, along), share(index % AROUND, AROUND));
-            (u, v, surface.point(u, v))
-        };
-        let all = (0..(along + 1) * AROUND).into_par_iter().with_min_len(TOGETHER);
-        let grid: Vec<(f64, f64, DVec3)> = all.map(place).collect();
-        let (low, high) =
-            grid.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (_, _, point)| {
-                (low.min(*point), high.max(*point))
-            });
-        // The table cuts corners of the body; its box gets a little room for them.
-        let room = DVec3::splat(0.05 * (high - low).max_element().max(1e-6));
-        Self { surface, ends, grid, low: low - room, high: high + room }
+        Self::with_table(surface, ends, Arc::new(Table::new(surface, ends)))
+    }
+
+    /// The same with the table that it has already.
+    pub(crate) fn with_table(surface: &'s dyn ParametricSurface, ends: [End; 2], table: Arc<Table>) -> Self {
+        Self { surface, ends, table }
     }
 
     /// False when the point is certainly outside.
     pub(crate) fn near(&self, point: DVec3) -> bool {
-        point.cmpge(self.low).all() && point.cmple(self.high).all()
+        point.cmpge(self.table.low).all() && point.cmple(self.table.high).all()
     }
 
     /// False when two bodies certainly lie apart.
     pub(crate) fn meets(&self, other: &Self) -> bool {
-        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+        let (one, other) = (&self.table, &other.table);
+        one.low.cmple(other.high).all() && other.low.cmple(one.high).all()
     }
 
     /// The place of the surface nearest to a point.
     pub(crate) fn foot(&self, point: DVec3) -> Foot {
-        let mut best = (f64::INFINITY, 0.0, 0.0);
-        for (u, v, place) in &self.grid {
-            let distance = place.distance_squared(point);
-            if distance < best.0 {
-                best = (distance, *u, *v);
-            }
-        }
-        self.refine(point, best.1, best.2)
+        self.foot_from(self.table.nearest(point).0, point)
+    }
+
+    /// The same from a place of the table.
+    fn foot_from(&self, index: usize, point: DVec3) -> Foot {
+        let (u, v) = place(index, self.table.along);
+        self.refine(point, u, v)
     }
 
     /// The same from a place near by.
@@ -133,13 +312,108 @@ impl<'s> Solid<'s> {
         Foot { u, v, distance, beyond }
     }
 
-    /// True for a point within the body, at least `depth` (mm) deep.
-    pub(crate) fn contains(&self, point: DVec3, depth: f64) -> bool {
-        if !self.near(point) {
-            return false;
+    /// On which side of the surface a point lies. What is known around another point is renewed where it does not help.
+    pub(crate) fn side(&self, point: DVec3, clear: &mut Clear) -> Side {
+        if clear.holds(point) {
+            return clear.side;
         }
-        let foot = self.foot(point);
-        !foot.beyond && foot.distance < -depth
+        let (index, square) = self.table.nearest(point);
+        if let Some(side) = self.certainly(index, point) {
+            *clear = self.clear(point, square, side);
+            return side;
+        }
+        let foot = self.foot_from(index, point);
+        if foot.beyond {
+            Side::Beyond
+        } else if foot.distance < 0.0 {
+            Side::Inside
+        } else {
+            Side::Outside
+        }
+    }
+
+    /// The side of a point by the nearest place of the table, if that is enough to tell.
+    fn certainly(&self, index: usize, point: DVec3) -> Option<Side> {
+        let row = index / AROUND as usize;
+        let last = self.table.along as usize;
+        let near = |end: usize, away: usize| self.ends[end] == End::Open && away < EDGE;
+        if near(0, row) || near(1, last - row) {
+            return None;
+        }
+        let steepness = self.table.steepness(index, point);
+        if steepness > STEEP {
+            Some(Side::Outside)
+        } else if steepness < -STEEP {
+            Some(Side::Inside)
+        } else {
+            None
+        }
+    }
+
+    /// The ball around a point, so far from the nearest place of the table, in which the side is the same.
+    fn clear(&self, center: DVec3, square: f64, side: Side) -> Clear {
+        let openings = self.table.openings.iter().map(|(at, radius)| center.distance(*at) - radius);
+        let radius = openings.fold(square.sqrt() - self.table.cell, f64::min).max(0.0);
+        Clear { center, radius, side }
+    }
+
+    /// The first of some points that lies within the body, at least `depth` (mm) deep.
+    pub(crate) fn first_within(&self, points: impl IntoIterator<Item = DVec3>, depth: f64) -> Option<DVec3> {
+        let mut clear = Clear::NOWHERE;
+        points.into_iter().find(|point| {
+            if !self.near(*point) || clear.holds(*point) {
+                return false;
+            }
+            let (index, square) = self.table.nearest(*point);
+            if self.certainly(index, *point) == Some(Side::Outside) {
+                clear = self.clear(*point, square, Side::Outside);
+                return false;
+            }
+            let foot = self.foot_from(index, *point);
+            !foot.beyond && foot.distance < -depth
+        })
+    }
+
+    /// Points all over the tube.
+    pub(crate) fn all_over(&self) -> &[DVec3] {
+        self.table.all_over.get_or_init(|| points(self.surface, 0.0).collect())
+    }
+
+    /// Where a line of another surface comes through this one: u on that line, and a place of this surface near it as the
+    /// start; `None` where the steps of Newton do not find one between `low` and `high`.
+    pub(crate) fn pierced(
+        &self,
+        line: impl Fn(f64) -> Jet,
+        [low, high]: [f64; 2],
+        start: &Foot,
+    ) -> Option<(f64, f64, f64)> {
+        let (mut t, mut u, mut v) = (high, start.u, start.v);
+        let mut near = false;
+        for _ in 0..MOST_STEPS {
+            let (there, here) = (line(t), self.jet(u, v));
+            let miss = here.point - there.point;
+            let normal = here.du.cross(here.dv);
+            let rise = there.du.dot(normal);
+            // The line is to leave the body, not along its surface.
+            if rise.is_nan() || rise <= FLAT * there.du.length() * normal.length() {
+                return None;
+            }
+            let step = miss.dot(normal) / rise;
+            let off = there.du * step - miss;
+            let square = normal.length_squared();
+            let (along, around) =
+                (off.cross(here.dv).dot(normal) / square, here.du.cross(off).dot(normal) / square);
+            (t, u, v) = (t + step, u + along, v + around);
+            let inside = (low..=high).contains(&t) && (INSET..=1.0 - INSET).contains(&u);
+            if !inside {
+                return None;
+            }
+            if near {
+                return Some((t, u, v));
+            }
+            near = step.abs() < NEARLY && along.abs().max(around.abs()) < NEARLY;
+        }
+        None
     }
 
     fn jet(&self, u: f64, v: f64) -> Jet {
@@ -147,4 +421,16 @@ impl<'s> Solid<'s> {
         let jet = self.surface.jet(inside, v);
         if inside == u { jet } else { Jet { point: self.surface.point(u, v), ..jet } }
     }
+}
+
+/// Points all over a tube, from a share of its length on.
+pub(crate) fn points(
+    tube: &(impl ParametricSurface + ?Sized),
+    from: f64,
+) -> impl Iterator<Item = DVec3> + '_ {
+    let [along, around] = CROSSING;
+    (0..=along).flat_map(move |i| {
+        let u = from + (1.0 - from) * f64::from(i) / f64::from(along);
+        (0..around).map(move |k| tube.point(u, f64::from(k) / f64::from(around)))
+    })
 }

@@ -8,10 +8,11 @@ use super::walk::{Number, Value, Walk};
 use crate::diag::{Code, Diagnostic, Span, did_you_mean};
 use crate::ir::Gauge;
 use crate::shape::branch::{Branch, Misfit, crossing};
-use crate::shape::solid::Solid;
+use crate::shape::solid::{Solid, Table};
 use crate::shape::{self, End, Joint};
 use glam::DVec3;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use toml::de::DeTable;
 
 /// Most branches of one file.
@@ -112,6 +113,19 @@ struct Node {
     segments: usize,
 }
 
+/// What is known of the tubes of a shape as bodies, each tabulated when it is first asked for.
+#[derive(Default)]
+struct Bodies(BTreeMap<usize, Arc<Table>>);
+
+impl Bodies {
+    /// The tube with this number.
+    fn solid<'s>(&mut self, index: usize, tube: &'s shape::Tube) -> Solid<'s> {
+        let ends = [tube.start, tube.end];
+        let table = self.0.entry(index).or_insert_with(|| Arc::new(Table::new(&*tube.surface, ends)));
+        Solid::with_table(&*tube.surface, ends, Arc::clone(table))
+    }
+}
+
 /// The tubes of a shape: the trunk, and the branches cut off where they leave it.
 pub(super) fn grow(
     walk: &mut Walk<'_>,
@@ -124,10 +138,11 @@ pub(super) fn grow(
         fork(&mut nodes, index);
     }
     let mut tubes: Vec<shape::Tube> = Vec::new();
+    let mut bodies = Bodies::default();
     let mut centers: BTreeMap<usize, (usize, Places)> = BTreeMap::new();
     for index in 0..nodes.len() {
         if nodes.get(index).is_some_and(|node| node.joint == Joint::Split && node.tube.is_some()) {
-            divide(walk, &mut nodes, index, (gauge, gauge_span), &mut tubes, &mut centers)?;
+            divide(walk, &mut nodes, index, (gauge, gauge_span), (&mut tubes, &mut bodies), &mut centers)?;
             continue;
         }
         let Some(tube) = nodes.get_mut(index).and_then(|node| node.tube.take()) else { continue };
@@ -144,7 +159,7 @@ pub(super) fn grow(
             let at = place_on(&nodes, node);
             begins(walk, node, &places, axis, at, base)?;
             let give = if node.joint == Joint::Opening { SLIT_GIVE } else { GIVE };
-            let solid = Solid::new(&*base.surface, [base.start, base.end]);
+            let solid = bodies.solid(*parent, base);
             match Branch::new(sweep, &solid, gauge.width, give) {
                 Ok(branch) => shape::Tube::new(&node.name, Box::new(branch), ends).on(*parent, node.joint),
                 Err(misfit) => {
@@ -155,7 +170,7 @@ pub(super) fn grow(
                 }
             }
         };
-        apart(walk, node, &places, &tube, &tubes)?;
+        apart(walk, node, &places, (&tube, tubes.len()), &tubes, &mut bodies)?;
         centers.insert(index, (tubes.len(), places));
         tubes.push(tube);
     }
@@ -168,7 +183,7 @@ fn divide(
     nodes: &mut [Node],
     index: usize,
     (gauge, gauge_span): (&Gauge, Span),
-    tubes: &mut Vec<shape::Tube>,
+    (tubes, bodies): (&mut Vec<shape::Tube>, &mut Bodies),
     centers: &mut BTreeMap<usize, (usize, Places)>,
 ) -> Option<()> {
     let own = nodes.get(index)?.parent;
@@ -215,7 +230,8 @@ fn divide(
     for ((stack, leg), i) in pair::legs(walk, base, legs, gauge)?.into_iter().zip([one, other]) {
         let ends = [leg.places.start, leg.places.end];
         let tube = shape::Tube::new(&leg.name, Box::new(stack), ends).on(parent, Joint::Split);
-        apart(walk, nodes.get(i)?, &leg.places, &tube, tubes.get(..others)?)?;
+        let own = (&tube, tubes.len());
+        apart(walk, nodes.get(i)?, &leg.places, own, tubes.get(..others)?, bodies)?;
         centers.insert(i, (tubes.len(), leg.places));
         tubes.push(tube);
     }
@@ -383,26 +399,27 @@ fn begins(
     None
 }
 
-/// Checks that a tube runs through no other one.
+/// Checks that a tube with its number runs through no other one.
 fn apart(
     walk: &mut Walk<'_>,
     node: &Node,
     places: &Places,
-    tube: &shape::Tube,
+    (tube, own): (&shape::Tube, usize),
     others: &[shape::Tube],
+    bodies: &mut Bodies,
 ) -> Option<()> {
     let parent = tube.attachment.map(|attachment| attachment.parent);
     let mut others = others.iter().enumerate().filter(|(index, _)| parent != Some(*index)).peekable();
     if others.peek().is_none() {
         return Some(());
     }
-    let own = Solid::new(&*tube.surface, [tube.start, tube.end]);
-    for (_, other) in others {
-        let body = Solid::new(&*other.surface, [other.start, other.end]);
+    let own = bodies.solid(own, tube);
+    for (index, other) in others {
+        let body = bodies.solid(index, other);
         if !own.meets(&body) {
             continue;
         }
-        let at = crossing(&*tube.surface, &body).or_else(|| crossing(&*other.surface, &own));
+        let at = crossing(&own, &body).or_else(|| crossing(&body, &own));
         let Some(at) = at else { continue };
         let message = format!("`{}` runs through `{}` at {}", node.name, other.name, coordinates(walk, at));
         walk.report(

@@ -66,7 +66,7 @@ pub(super) fn legs(
             let u = APART + (1.0 - APART) * f64::from(i) / 24.0;
             (0..24).map(move |k| from.point(u, f64::from(k) / 24.0))
         });
-        points.into_iter().find(|point| body.contains(*point, DEEP * gauge.width))
+        body.first_within(points, DEEP * gauge.width)
     };
     let at: Option<DVec3> =
         inside(&stacks[0], &stacks[1], &other).or_else(|| inside(&stacks[1], &stacks[0], &one));
