@@ -1,6 +1,7 @@
 //! Where a branch leaves its parent: the rim in which the two tubes meet, and the part of the branch beyond it.
 
-use super::solid::{Clear, Foot, Side, Solid, points};
+use super::beads::Beads;
+use super::solid::{Foot, Known, Side, Solid, around, lines};
 use super::stack::Stack;
 use super::{End, Jet, ParametricSurface};
 use crate::math;
@@ -74,18 +75,29 @@ pub struct Branch<S> {
 
 impl<S: ParametricSurface> Branch<S> {
     /// Cuts a branch off at the surface of its parent. Rims have no corners finer than a stitch of
-    /// `width` (mm), and rows may lie off them by `give` stitches, for fabric yields.
+    /// `width` (mm), and rows may lie off them by `give` stitches, for fabric yields. The surface lies within the beads.
     ///
     /// The line v = 0 begins at the place of the rim that a round of the parent comes to first.
-    pub(crate) fn new(surface: S, parent: &Solid<'_>, width: f64, give: f64) -> Result<Self, Misfit> {
+    pub(crate) fn new(
+        surface: S,
+        beads: &Beads,
+        parent: &Solid<'_>,
+        [width, give]: [f64; 2],
+    ) -> Result<Self, Misfit> {
         let girth = super::girth(&surface, 0.0, 32);
         let length = super::length_along(&surface, 0.0, 0.0..1.0, 8).max(1e-9);
         let back = BACKWARD * girth / length;
         let turn = |k: usize| k as f64 / AROUND as f64;
-        let all = (0..AROUND).into_par_iter().with_min_len(TOGETHER);
-        let ways: Vec<Way> = all.map(|k| Way::out(&surface, parent, turn(k), back)).collect();
+        // Lines beside each other share what they find.
+        let ways = |first: usize| -> Vec<Way> {
+            let mut known = Known::default();
+            let lines = first..(first + TOGETHER).min(AROUND);
+            lines.map(|k| Way::out(&surface, parent, turn(k), back, &mut known)).collect()
+        };
+        let ways: Vec<Vec<Way>> =
+            (0..AROUND.div_ceil(TOGETHER)).into_par_iter().map(|k| ways(k * TOGETHER)).collect();
         let mut outs = Vec::with_capacity(AROUND);
-        for way in &ways {
+        for way in ways.iter().flatten() {
             match *way {
                 Way::Out(u, foot) => outs.push((u, foot)),
                 Way::Never => {}
@@ -102,7 +114,14 @@ impl<S: ParametricSurface> Branch<S> {
         }
         let places: Vec<f64> = outs.iter().map(|out| out.0).collect();
         let sharp = Self { rim: with_slopes(&places), mean: mean(&places), ease: 0.0, phase: 0.0, surface };
-        if let Some(at) = parent.first_within(points(&sharp, RIM), TOUCH) {
+        let outside = beads.outside(parent);
+        let [low, high] = sharp.range();
+        let near = lines(RIM).filter(|u| {
+            // Rows lie between those of the least and of the greatest place of the rim.
+            let [low, high] = [low, high].map(|place| place + (1.0 - place) * u);
+            !outside.between(low, high)
+        });
+        if let Some(at) = parent.first_within(near.flat_map(|u| around(&sharp, u)), TOUCH) {
             return Err(Misfit::Returns { at });
         }
         let feet: Vec<Foot> = outs.iter().map(|out| out.1).collect();
@@ -129,6 +148,20 @@ impl<S: ParametricSurface> Branch<S> {
         // Rows nowhere come nearer to each other than a fifth of their mean distance.
         let ease = (0.8 * (1.0 - mean) / (highest - mean).max(1e-9) - 1.0).clamp(0.0, 1.0);
         Self { rim: with_slopes(places), mean, ease, phase: 0.0, surface }
+    }
+
+    /// Least and greatest place of the rim; a cubic may swing out a little between its places.
+    fn range(&self) -> [f64; 2] {
+        let swing = self.rim.iter().map(|[_, slope]| 0.5 * slope.abs()).fold(0.0, f64::max);
+        let places = self.rim.iter().map(|[place, _]| *place);
+        let (low, high) =
+            places.fold((f64::INFINITY, f64::NEG_INFINITY), |it, place| (it.0.min(place), it.1.max(place)));
+        [low - swing, high + swing]
+    }
+
+    /// The part of the surface's beads that holds the branch; `None` for one that begins before them.
+    pub(crate) fn beads(&self, beads: Beads) -> Option<Beads> {
+        beads.from(self.range()[0])
     }
 
     /// The underlying u at a visible u, with its slopes by u and v.
@@ -324,9 +357,19 @@ fn distance(surface: &dyn ParametricSurface, parent: &Solid<'_>, v: f64, back: f
 }
 
 impl Way {
-    fn out(surface: &dyn ParametricSurface, parent: &Solid<'_>, v: f64, back: f64) -> Self {
-        let mut clear = Clear::NOWHERE;
-        let mut at = |u: f64| parent.side(surface.point(u, v), &mut clear);
+    fn out(
+        surface: &dyn ParametricSurface,
+        parent: &Solid<'_>,
+        v: f64,
+        back: f64,
+        known: &mut Known,
+    ) -> Self {
+        let mut place = None;
+        let mut at = |u: f64| {
+            let (side, near) = parent.side(surface.point(u, v), known);
+            place = near.or(place);
+            side
+        };
         let step = 1.0 / f64::from(ALONG);
         let mut last = 0.0;
         if at(0.0) != Side::Inside {
@@ -338,7 +381,7 @@ impl Way {
                 }
                 if at(u) == Side::Inside {
                     if u < 0.0 {
-                        return Self::between(parent, surface, v, [u, out]);
+                        return Self::between(parent, surface, v, [u, out], place);
                     }
                     (found, last) = (true, u);
                     break;
@@ -353,7 +396,7 @@ impl Way {
         for u in (start..=ALONG).map(|k| f64::from(k) * step) {
             match at(u) {
                 Side::Beyond => return Self::OpenEnd,
-                Side::Outside => return Self::between(parent, surface, v, [last, u]),
+                Side::Outside => return Self::between(parent, surface, v, [last, u], place),
                 Side::Inside => last = u,
             }
         }
@@ -366,9 +409,13 @@ impl Way {
         surface: &dyn ParametricSurface,
         v: f64,
         [mut inside, mut outside]: [f64; 2],
+        near: Option<(f64, f64)>,
     ) -> Self {
-        let mut foot = parent.foot(surface.point(outside, v));
-        let place = parent.pierced(|u| surface.jet(u, v), [inside, outside], &foot);
+        let near = near.unwrap_or_else(|| parent.place_near(surface.point(outside, v)));
+        let place = parent.pierced(|u| surface.jet(u, v), [inside, outside], near);
+        let begin = outside;
+        let start = || parent.foot(surface.point(begin, v));
+        let mut foot = None;
         // The interval is halved until rounding stops it, looking only where the place found does not tell the side.
         for _ in 0..HALVINGS {
             let middle = 0.5 * (inside + outside);
@@ -376,19 +423,26 @@ impl Way {
                 Some((out, ..)) if middle < out - ROUNDING => inside = middle,
                 Some((out, ..)) if middle > out + ROUNDING => outside = middle,
                 _ => {
-                    let (u, v_on) = place.map_or((foot.u, foot.v), |(_, u, v)| (u, v));
+                    let (u, v_on) = place.map_or_else(
+                        || {
+                            let foot: &Foot = foot.get_or_insert_with(start);
+                            (foot.u, foot.v)
+                        },
+                        |(_, u, v)| (u, v),
+                    );
                     let next = parent.refine(surface.point(middle, v), u, v_on);
                     if next.distance < 0.0 {
                         inside = middle;
                     } else {
-                        (outside, foot) = (middle, next);
+                        (outside, foot) = (middle, Some(next));
                     }
                 }
             }
         }
-        if let Some((_, u, v_on)) = place {
-            foot = parent.refine(surface.point(outside, v), u, v_on);
-        }
+        let foot = match place {
+            Some((_, u, v_on)) => parent.refine(surface.point(outside, v), u, v_on),
+            None => foot.unwrap_or_else(start),
+        };
         if foot.beyond { Self::OpenEnd } else { Self::Out(outside, foot) }
     }
 }

@@ -1,6 +1,7 @@
 //! Shapes as continuous surfaces: the trait that any parametric surface implements, and the object made of them.
 
 pub mod analytic;
+pub(crate) mod beads;
 pub mod bezier;
 pub mod branch;
 pub mod drift;

@@ -18,6 +18,11 @@ const TOGETHER: usize = 256;
 const CROSSING: [u32; 2] = [40, 24];
 /// Cosine to the normal at the nearest place of the table by which a point is certainly on that side of the surface.
 const STEEP: f64 = 0.5;
+/// The same at a foot that is nearly found, and how nearly (in u and v).
+const UPRIGHT: f64 = 0.9;
+const ROUGHLY: f64 = 1e-2;
+/// Balls without surface that are kept in mind.
+const BALLS: usize = 8;
 /// Rows of the table next to an open end where that is not certain.
 const EDGE: usize = 2;
 /// Steps that refine a foot.
@@ -194,6 +199,17 @@ fn widest_cell(row: &[DVec3], next: &[DVec3]) -> f64 {
     0.5 * cells.fold(0.0, f64::max).sqrt()
 }
 
+/// The side by the cosine between the way to a point and the outward normal, if it is steep enough.
+fn decided(cosine: f64, least: f64) -> Option<Side> {
+    if cosine > least {
+        Some(Side::Outside)
+    } else if cosine < -least {
+        Some(Side::Inside)
+    } else {
+        None
+    }
+}
+
 /// Where a point lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
@@ -207,18 +223,31 @@ pub(crate) enum Side {
 
 /// A ball that the surface does not run through: all its points lie on one side.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Clear {
+struct Clear {
     center: DVec3,
     radius: f64,
     side: Side,
 }
 
-impl Clear {
-    /// One without points.
-    pub(crate) const NOWHERE: Self = Self { center: DVec3::ZERO, radius: 0.0, side: Side::Outside };
+/// What is known of points by others near them: the last few balls, by turns.
+#[derive(Debug, Default)]
+pub(crate) struct Known {
+    balls: [Option<Clear>; BALLS],
+    next: usize,
+}
 
-    fn holds(&self, point: DVec3) -> bool {
-        point.distance_squared(self.center) < self.radius * self.radius
+impl Known {
+    /// The side of a point, if a ball tells it.
+    fn side(&self, point: DVec3) -> Option<Side> {
+        let holds = |ball: &&Clear| point.distance_squared(ball.center) < ball.radius * ball.radius;
+        self.balls.iter().flatten().find(holds).map(|ball| ball.side)
+    }
+
+    fn add(&mut self, ball: Clear) {
+        if ball.radius > 0.0 {
+            self.balls[self.next] = Some(ball);
+            self.next = (self.next + 1) % BALLS;
+        }
     }
 }
 
@@ -231,6 +260,8 @@ pub(crate) struct Foot {
     pub(crate) v: f64,
     /// Distance from the surface in mm, negative inside.
     pub(crate) distance: f64,
+    /// Cosine between the way to the point and the normal: 1 or -1 unless the foot lies on an edge or is not found.
+    cosine: f64,
     /// The point lies beyond an open end, where the surface says nothing of inside and outside.
     pub(crate) beyond: bool,
 }
@@ -308,46 +339,70 @@ impl<'s> Solid<'s> {
             end == End::Open && (at - edge).abs() < 1e-9 && sign * d.dot(jet.du) > 1e-6 * jet.du.length()
         };
         let beyond = beyond(u, 0.0, self.ends[0], -1.0) || beyond(u, 1.0, self.ends[1], 1.0);
-        let distance = if d.dot(outward) < 0.0 { -d.length() } else { d.length() };
-        Foot { u, v, distance, beyond }
+        let height = d.dot(outward);
+        let distance = if height < 0.0 { -d.length() } else { d.length() };
+        Foot { u, v, distance, cosine: height / (d.length() * outward.length()), beyond }
     }
 
-    /// On which side of the surface a point lies. What is known around another point is renewed where it does not help.
-    pub(crate) fn side(&self, point: DVec3, clear: &mut Clear) -> Side {
-        if clear.holds(point) {
-            return clear.side;
+    /// True for a point within the body, at least `depth` (mm) deep.
+    #[cfg(test)]
+    fn contains(&self, point: DVec3, depth: f64) -> bool {
+        let foot = self.foot(point);
+        self.near(point) && !foot.beyond && foot.distance < -depth
+    }
+
+    /// On which side of the surface a point lies; and u and v of a place of the surface near it where one was looked up, which
+    /// what is known of points near by may spare. That grows by what is found here.
+    pub(crate) fn side(&self, point: DVec3, known: &mut Known) -> (Side, Option<(f64, f64)>) {
+        if let Some(side) = known.side(point) {
+            return (side, None);
         }
         let (index, square) = self.table.nearest(point);
-        if let Some(side) = self.certainly(index, point) {
-            *clear = self.clear(point, square, side);
-            return side;
+        let (u, v) = place(index, self.table.along);
+        let sound = !self.at_edge(index);
+        if sound && let Some(side) = decided(self.table.steepness(index, point), STEEP) {
+            known.add(self.clear(point, square, side));
+            return (side, Some((u, v)));
         }
-        let foot = self.foot_from(index, point);
-        if foot.beyond {
+        if sound {
+            let foot = self.refine_to(point, u, v, ROUGHLY);
+            let rounding = 1e-9 * self.table.cell;
+            if let Some(side) = decided(foot.cosine, UPRIGHT).filter(|_| foot.distance.abs() > rounding) {
+                return (side, Some((foot.u, foot.v)));
+            }
+        }
+        let foot = self.refine(point, u, v);
+        let side = if foot.beyond {
             Side::Beyond
         } else if foot.distance < 0.0 {
             Side::Inside
         } else {
             Side::Outside
-        }
+        };
+        (side, Some((foot.u, foot.v)))
     }
 
-    /// The side of a point by the nearest place of the table, if that is enough to tell.
-    fn certainly(&self, index: usize, point: DVec3) -> Option<Side> {
+    /// True when a ball certainly lies outside.
+    pub(crate) fn avoids(&self, center: DVec3, radius: f64, known: &mut Known) -> bool {
+        let holds =
+            |ball: &Clear| ball.side == Side::Outside && center.distance(ball.center) + radius < ball.radius;
+        if known.balls.iter().flatten().any(holds) {
+            return true;
+        }
+        let (index, square) = self.table.nearest(center);
+        if self.at_edge(index) || decided(self.table.steepness(index, center), STEEP) != Some(Side::Outside) {
+            return false;
+        }
+        let ball = self.clear(center, square, Side::Outside);
+        known.add(ball);
+        holds(&ball)
+    }
+
+    /// Whether a place of the table is so near to an open end that points over it may lie beyond that.
+    fn at_edge(&self, index: usize) -> bool {
         let row = index / AROUND as usize;
-        let last = self.table.along as usize;
         let near = |end: usize, away: usize| self.ends[end] == End::Open && away < EDGE;
-        if near(0, row) || near(1, last - row) {
-            return None;
-        }
-        let steepness = self.table.steepness(index, point);
-        if steepness > STEEP {
-            Some(Side::Outside)
-        } else if steepness < -STEEP {
-            Some(Side::Inside)
-        } else {
-            None
-        }
+        near(0, row) || near(1, self.table.along as usize - row)
     }
 
     /// The ball around a point, so far from the nearest place of the table, in which the side is the same.
@@ -359,19 +414,19 @@ impl<'s> Solid<'s> {
 
     /// The first of some points that lies within the body, at least `depth` (mm) deep.
     pub(crate) fn first_within(&self, points: impl IntoIterator<Item = DVec3>, depth: f64) -> Option<DVec3> {
-        let mut clear = Clear::NOWHERE;
+        let mut known = Known::default();
         points.into_iter().find(|point| {
-            if !self.near(*point) || clear.holds(*point) {
+            if !self.near(*point) || self.side(*point, &mut known).0 != Side::Inside {
                 return false;
             }
-            let (index, square) = self.table.nearest(*point);
-            if self.certainly(index, *point) == Some(Side::Outside) {
-                clear = self.clear(*point, square, Side::Outside);
-                return false;
-            }
-            let foot = self.foot_from(index, *point);
+            let foot = self.foot(*point);
             !foot.beyond && foot.distance < -depth
         })
+    }
+
+    /// A place of the surface near a point, as u and v.
+    pub(crate) fn place_near(&self, point: DVec3) -> (f64, f64) {
+        place(self.table.nearest(point).0, self.table.along)
     }
 
     /// Points all over the tube.
@@ -385,9 +440,9 @@ impl<'s> Solid<'s> {
         &self,
         line: impl Fn(f64) -> Jet,
         [low, high]: [f64; 2],
-        start: &Foot,
+        (mut u, mut v): (f64, f64),
     ) -> Option<(f64, f64, f64)> {
-        let (mut t, mut u, mut v) = (high, start.u, start.v);
+        let mut t = high;
         let mut near = false;
         for _ in 0..MOST_STEPS {
             let (there, here) = (line(t), self.jet(u, v));
@@ -428,9 +483,71 @@ pub(crate) fn points(
     tube: &(impl ParametricSurface + ?Sized),
     from: f64,
 ) -> impl Iterator<Item = DVec3> + '_ {
-    let [along, around] = CROSSING;
-    (0..=along).flat_map(move |i| {
-        let u = from + (1.0 - from) * f64::from(i) / f64::from(along);
-        (0..around).map(move |k| tube.point(u, f64::from(k) / f64::from(around)))
-    })
+    lines(from).flat_map(|u| around(tube, u))
+}
+
+/// Places along a tube at which it is asked whether it runs into another one, from a share of its length on.
+pub(crate) fn lines(from: f64) -> impl Iterator<Item = f64> {
+    let along = CROSSING[0];
+    (0..=along).map(move |i| from + (1.0 - from) * f64::from(i) / f64::from(along))
+}
+
+/// Points around a tube at one of these.
+pub(crate) fn around(tube: &(impl ParametricSurface + ?Sized), u: f64) -> impl Iterator<Item = DVec3> + '_ {
+    let around = CROSSING[1];
+    (0..around).map(move |k| tube.point(u, f64::from(k) / f64::from(around)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::analytic::TorusArc;
+
+    /// Points all over a box, near the surface and far from it.
+    fn everywhere() -> impl Iterator<Item = DVec3> {
+        let at = |k: u32, of: f64| f64::from(k) / of - 0.5;
+        (0..14_000).map(move |k| {
+            DVec3::new(140.0 * at(k % 20, 19.0), 140.0 * at(k / 20 % 25, 24.0), 60.0 * at(k / 500, 27.0))
+        })
+    }
+
+    #[test]
+    fn the_nearest_place_is_that_of_all() {
+        let tube = TorusArc { major: 40.0, minor: 11.0, angle: 2.0 };
+        let table = Table::new(&tube, [End::Open; 2]);
+        for point in everywhere().step_by(7) {
+            let all = table.points.iter().map(|place| place.distance_squared(point)).enumerate();
+            let least =
+                all.fold((usize::MAX, f64::INFINITY), |it, next| if next.1 < it.1 { next } else { it });
+            assert_eq!(table.nearest(point), least, "{point}");
+        }
+    }
+
+    #[test]
+    fn sides_are_those_of_feet() {
+        let tube = TorusArc { major: 40.0, minor: 11.0, angle: 2.0 };
+        for ends in [[End::Open; 2], [End::Closed; 2], [End::Open, End::Closed]] {
+            let solid = Solid::new(&tube, ends);
+            let mut known = Known::default();
+            let mut inside = 0;
+            for point in everywhere() {
+                let foot = solid.foot(point);
+                // Right behind the disk of an open end no foot tells.
+                if (foot.u == 0.0 || foot.u == 1.0) && foot.cosine.abs() < 0.99 {
+                    continue;
+                }
+                let side = match foot {
+                    Foot { beyond: true, .. } => Side::Beyond,
+                    Foot { distance, .. } if distance < 0.0 => Side::Inside,
+                    _ => Side::Outside,
+                };
+                assert_eq!(solid.side(point, &mut known).0, side, "{point} {foot:?}");
+                inside += u32::from(side == Side::Inside);
+            }
+            assert!(inside > 500, "{inside}");
+            let first = everywhere().find(|point| solid.contains(*point, 2.0));
+            assert!(first.is_some());
+            assert_eq!(solid.first_within(everywhere(), 2.0), first);
+        }
+    }
 }

@@ -7,6 +7,7 @@ use super::tube::{self, Places, Tube};
 use super::walk::{Number, Value, Walk};
 use crate::diag::{Code, Diagnostic, Span, did_you_mean};
 use crate::ir::Gauge;
+use crate::shape::beads::Beads;
 use crate::shape::branch::{Branch, Misfit, crossing};
 use crate::shape::solid::{Solid, Table};
 use crate::shape::{self, End, Joint};
@@ -113,16 +114,25 @@ struct Node {
     segments: usize,
 }
 
-/// What is known of the tubes of a shape as bodies, each tabulated when it is first asked for.
+/// What is known of the tubes of a shape as bodies, by their numbers.
 #[derive(Default)]
-struct Bodies(BTreeMap<usize, Arc<Table>>);
+struct Bodies {
+    /// Each is made when it is first asked for.
+    tables: BTreeMap<usize, Arc<Table>>,
+    beads: BTreeMap<usize, Beads>,
+}
 
 impl Bodies {
     /// The tube with this number.
     fn solid<'s>(&mut self, index: usize, tube: &'s shape::Tube) -> Solid<'s> {
         let ends = [tube.start, tube.end];
-        let table = self.0.entry(index).or_insert_with(|| Arc::new(Table::new(&*tube.surface, ends)));
+        let table = self.tables.entry(index).or_insert_with(|| Arc::new(Table::new(&*tube.surface, ends)));
         Solid::with_table(&*tube.surface, ends, Arc::clone(table))
+    }
+
+    /// True when two tubes certainly lie apart.
+    fn apart(&self, one: usize, other: usize) -> bool {
+        self.beads.get(&one).zip(self.beads.get(&other)).is_some_and(|(one, other)| !one.meet(other))
     }
 }
 
@@ -147,11 +157,11 @@ pub(super) fn grow(
         }
         let Some(tube) = nodes.get_mut(index).and_then(|node| node.tube.take()) else { continue };
         let (sweep, places) = tube.sweep(RIM * gauge.height, walk)?;
-        fit::check(walk, &sweep, &places, gauge, gauge_span).then_some(())?;
+        let beads = fit::check(walk, &sweep, &places, gauge, gauge_span)?;
         let node = nodes.get(index)?;
         let ends = [places.start, places.end];
-        let tube = if index == 0 {
-            shape::Tube::new("trunk", Box::new(sweep), ends)
+        let (tube, beads) = if index == 0 {
+            (shape::Tube::new("trunk", Box::new(sweep), ends), Some(beads))
         } else {
             let root = root(&nodes, node.parent);
             let (parent, axis) = centers.get(&root)?;
@@ -160,8 +170,12 @@ pub(super) fn grow(
             begins(walk, node, &places, axis, at, base)?;
             let give = if node.joint == Joint::Opening { SLIT_GIVE } else { GIVE };
             let solid = bodies.solid(*parent, base);
-            match Branch::new(sweep, &solid, gauge.width, give) {
-                Ok(branch) => shape::Tube::new(&node.name, Box::new(branch), ends).on(*parent, node.joint),
+            match Branch::new(sweep, &beads, &solid, [gauge.width, give]) {
+                Ok(branch) => {
+                    let beads = branch.beads(beads);
+                    let tube = shape::Tube::new(&node.name, Box::new(branch), ends);
+                    (tube.on(*parent, node.joint), beads)
+                }
                 Err(misfit) => {
                     let center = axis.point(at);
                     let finding = explain(walk, node, &places, &base.name, misfit, center);
@@ -170,6 +184,7 @@ pub(super) fn grow(
                 }
             }
         };
+        bodies.beads.extend(beads.map(|beads| (tubes.len(), beads)));
         apart(walk, node, &places, (&tube, tubes.len()), &tubes, &mut bodies)?;
         centers.insert(index, (tubes.len(), places));
         tubes.push(tube);
@@ -221,7 +236,7 @@ fn divide(
     for i in [one, other] {
         let node = nodes.get_mut(i)?;
         let (sweep, places) = node.tube.take()?.sweep(RIM * gauge.height, walk)?;
-        fit::check(walk, &sweep, &places, gauge, gauge_span).then_some(())?;
+        fit::check(walk, &sweep, &places, gauge, gauge_span)?;
         begins(walk, node, &places, axis, at, base)?;
         legs.push(pair::Leg { name: node.name.clone(), sweep, places });
     }
@@ -409,13 +424,11 @@ fn apart(
     bodies: &mut Bodies,
 ) -> Option<()> {
     let parent = tube.attachment.map(|attachment| attachment.parent);
-    let mut others = others.iter().enumerate().filter(|(index, _)| parent != Some(*index)).peekable();
-    if others.peek().is_none() {
-        return Some(());
-    }
-    let own = bodies.solid(own, tube);
-    for (index, other) in others {
-        let body = bodies.solid(index, other);
+    for (index, other) in others.iter().enumerate() {
+        if parent == Some(index) || bodies.apart(own, index) {
+            continue;
+        }
+        let (own, body) = (bodies.solid(own, tube), bodies.solid(index, other));
         if !own.meets(&body) {
             continue;
         }

@@ -5,6 +5,7 @@ use super::tube::Places;
 use super::walk::Walk;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::ir::{Gauge, MAX_LOOPS, MAX_ROW};
+use crate::shape::beads::Beads;
 use crate::shape::{End, Sweep};
 use glam::DVec3;
 
@@ -26,15 +27,15 @@ struct Measures {
     extent: f64,
 }
 
-/// Checks the tube against the gauge.
+/// Checks the tube against the gauge; of a sound one, the balls that hold it.
 pub(super) fn check(
     walk: &mut Walk<'_>,
     surface: &Sweep,
     places: &Places,
     gauge: &Gauge,
     gauge_span: Span,
-) -> bool {
-    let measures = measure(surface);
+) -> Option<Beads> {
+    let (measures, beads) = measure(surface);
     let loops = measures.area / (gauge.width * gauge.height);
     let widest = measures.girths.iter().copied().fold(0.0, f64::max) / gauge.width;
     let station = |index: usize| surface.curve_parameter(index as f64 / STATIONS as f64);
@@ -52,7 +53,7 @@ pub(super) fn check(
                 .at(gauge_span, "for this stitch")
                 .help(unit_help(walk)),
         );
-        return false;
+        return None;
     }
     let rows = measures.length / gauge.height;
     if rows < LEAST_ROWS {
@@ -63,7 +64,7 @@ pub(super) fn check(
                 .at(gauge_span, format!("a stitch is {} mm high", short(gauge.height)))
                 .help(unit_help(walk)),
         );
-        return false;
+        return None;
     }
     let narrow = narrowest_station(&measures.girths, places);
     let girth = measures.girths.get(narrow).copied().unwrap_or_default();
@@ -79,7 +80,7 @@ pub(super) fn check(
                 .at(gauge_span, format!("a stitch is {} mm wide", short(gauge.width)))
                 .help(unit_help(walk)),
         );
-        return false;
+        return None;
     }
     if !LIKELY.contains(&measures.extent) {
         let (mm, unit) = (short(measures.extent), walk.unit.name());
@@ -89,7 +90,7 @@ pub(super) fn check(
                 .help(format!("this file counts in {unit}, is that right?")),
         );
     }
-    true
+    Some(beads)
 }
 
 fn unit_help(walk: &Walk<'_>) -> String {
@@ -112,7 +113,7 @@ fn narrowest_station(girths: &[f64], places: &Places) -> usize {
     stations.min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(index, _)| index)
 }
 
-fn measure(surface: &Sweep) -> Measures {
+fn measure(surface: &Sweep) -> (Measures, Beads) {
     let ring = |station: usize| {
         let mut points = [DVec3::ZERO; AROUND];
         surface.points_around(station as f64 / STATIONS as f64, &mut points);
@@ -122,11 +123,14 @@ fn measure(surface: &Sweep) -> Measures {
         ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| a.distance(*b)).sum()
     };
     let mut below = ring(0);
+    let mut points = Vec::with_capacity((STATIONS + 1) * AROUND);
+    points.extend_from_slice(&below);
     let mut measures = Measures { girths: vec![girth(&below)], length: 0.0, area: 0.0, extent: 0.0 };
     let mut meridians = vec![0.0; AROUND];
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for station in 1..=STATIONS {
         let above = ring(station);
+        points.extend_from_slice(&above);
         measures.girths.push(girth(&above));
         let next = |ring: &[DVec3], k: usize| ring.get((k + 1) % AROUND).copied().unwrap_or_default();
         for (k, ((a, b), meridian)) in below.iter().zip(&above).zip(&mut meridians).enumerate() {
@@ -138,5 +142,5 @@ fn measure(surface: &Sweep) -> Measures {
     }
     measures.length = meridians.into_iter().fold(0.0, f64::max);
     measures.extent = (high - low).max_element();
-    measures
+    (measures, Beads::new(&points, AROUND))
 }
