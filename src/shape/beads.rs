@@ -98,11 +98,12 @@ mod tests {
     #[test]
     fn beads_tell_what_lies_apart() {
         let tube = Cylinder { radius: 5.0, length: 60.0 };
-        let beads = |shift: DVec3| {
-            let at = |i: u32, k: u32| tube.point(f64::from(i) / 40.0, f64::from(k) / 24.0) + shift;
+        let beads_of = |turn: fn(DVec3) -> DVec3, shift: DVec3| {
+            let at = |i: u32, k: u32| turn(tube.point(f64::from(i) / 40.0, f64::from(k) / 24.0)) + shift;
             let points: Vec<DVec3> = (0..=40).flat_map(|i| (0..24).map(move |k| at(i, k))).collect();
             Beads::new(&points, 24)
         };
+        let beads = |shift: DVec3| beads_of(|point| point, shift);
         let here = beads(DVec3::ZERO);
         assert!(here.meet(&beads(DVec3::X * 9.9)), "they cross");
         assert!(!here.meet(&beads(DVec3::X * 13.5)), "they do not");
@@ -110,7 +111,8 @@ mod tests {
         let below = beads(DVec3::new(3.0, 0.0, -40.0));
         assert!(here.meet(&below) && here.clone().from(0.75).is_some_and(|rest| !rest.meet(&below)));
         let body = Solid::new(&tube, [End::Closed; 2]);
-        let outside = beads(DVec3::new(3.0, 0.0, 40.0)).outside(&body);
-        assert!(outside.between(0.6, 1.0) && !outside.between(0.2, 1.0));
+        // Out of its side.
+        let outside = beads_of(|point| DVec3::new(point.z, point.x, point.y), DVec3::Z * 30.0).outside(&body);
+        assert!(outside.between(0.6, 1.0) && !outside.between(0.1, 1.0));
     }
 }

@@ -364,24 +364,20 @@ impl Way {
         back: f64,
         known: &mut Known,
     ) -> Self {
-        let mut place = None;
-        let mut at = |u: f64| {
-            let (side, near) = parent.side(surface.point(u, v), known);
-            place = near.or(place);
-            side
-        };
+        let mut at = |u: f64| parent.side(surface.point(u, v), known);
         let step = 1.0 / f64::from(ALONG);
         let mut last = 0.0;
-        if at(0.0) != Side::Inside {
+        if at(0.0).0 != Side::Inside {
             let mut out = 0.0;
             let mut found = false;
             for u in looks(back) {
                 if u > 0.0 && out < 0.0 {
                     out = 0.0;
                 }
-                if at(u) == Side::Inside {
+                let (side, near) = at(u);
+                if side == Side::Inside {
                     if u < 0.0 {
-                        return Self::between(parent, surface, v, [u, out], place);
+                        return Self::between(parent, surface, v, [u, out], near);
                     }
                     (found, last) = (true, u);
                     break;
@@ -395,9 +391,10 @@ impl Way {
         let start = (last / step) as u32 + 1;
         for u in (start..=ALONG).map(|k| f64::from(k) * step) {
             match at(u) {
-                Side::Beyond => return Self::OpenEnd,
-                Side::Outside => return Self::between(parent, surface, v, [last, u], place),
-                Side::Inside => last = u,
+                (Side::Inside, _) => last = u,
+                (Side::Beyond, _) => return Self::OpenEnd,
+                (Side::Outside, None) if parent.foot(surface.point(u, v)).beyond => return Self::OpenEnd,
+                (Side::Outside, near) => return Self::between(parent, surface, v, [last, u], near),
             }
         }
         Self::Inside

@@ -150,6 +150,16 @@ impl Stack {
         }
     }
 
+    /// Whether the middle of each section certainly lies on the curve.
+    pub(super) fn centered(&self) -> bool {
+        match &self.kind {
+            Kind::Ellipses { spans, .. } => {
+                spans.iter().all(|span| span.cubics[2..].iter().flatten().all(|number| *number == 0.0))
+            }
+            Kind::Loops(_) => false,
+        }
+    }
+
     /// Whether the profile has a part along the tangent.
     pub(super) fn planar(&self) -> bool {
         matches!(self.kind, Kind::Ellipses { .. })
