@@ -23,7 +23,7 @@ const UPRIGHT: f64 = 0.9;
 const ROUGHLY: f64 = 1e-2;
 /// Balls without surface that are kept in mind.
 const BALLS: usize = 8;
-/// Rows of the table next to an open end where that is not certain.
+/// Rows of the table next to an end where that is not certain: points may lie beyond it, and poles have no normal.
 const EDGE: usize = 2;
 /// Steps that refine a foot.
 const STEPS: u32 = 8;
@@ -402,11 +402,10 @@ impl<'s> Solid<'s> {
         holds(&ball)
     }
 
-    /// Whether a place of the table is so near to an open end that points over it may lie beyond that.
+    /// Whether a place of the table is so near to an end that points over it may lie beyond that, or over a pole.
     fn at_edge(&self, index: usize) -> bool {
         let row = index / AROUND as usize;
-        let near = |end: usize, away: usize| self.ends[end] == End::Open && away < EDGE;
-        near(0, row) || near(1, self.table.along as usize - row)
+        row.min(self.table.along as usize - row) < EDGE
     }
 
     /// The ball around a point, so far from the nearest place of the table, in which the side is the same.
