@@ -369,8 +369,8 @@ impl<'s> Solid<'s> {
         }
         if sound {
             let foot = self.refine_to(point, u, v, ROUGHLY);
-            let rounding = 1e-9 * self.table.cell;
-            if let Some(side) = decided(foot.cosine, UPRIGHT).filter(|_| foot.distance.abs() > rounding) {
+            let sound = foot.distance.abs() > 1e-9 * self.table.cell && foot.u > 0.0 && foot.u < 1.0;
+            if let Some(side) = decided(foot.cosine, UPRIGHT).filter(|_| sound) {
                 return (side, Some((foot.u, foot.v)));
             }
         }
@@ -405,7 +405,8 @@ impl<'s> Solid<'s> {
     /// Whether a place of the table is so near to an end that points over it may lie beyond that, or over a pole.
     fn at_edge(&self, index: usize) -> bool {
         let row = index / AROUND as usize;
-        row.min(self.table.along as usize - row) < EDGE
+        let near = |end: usize, away: usize| away < if self.ends[end] == End::Open { EDGE } else { 1 };
+        near(0, row) || near(1, self.table.along as usize - row)
     }
 
     /// The ball around a point, so far from the nearest place of the table, in which the side is the same.
