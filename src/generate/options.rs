@@ -53,8 +53,8 @@ pub struct Options {
     pub sweeps: u32,
     /// Weight of a square tile against exact lengths in the final sweeps: higher trades length error for skew.
     pub squareness: f64,
-    /// Tries at a part, with small differences, of which the best is kept; a good one ends them, and parts over 5,000
-    /// stitches get one.
+    /// Tries at a part, with small differences, of which the best is kept; a good one ends them, parts over 5,000
+    /// stitches get one, and small or bad ones a few more.
     pub tries: u32,
     /// Shaping of rotationally symmetric shapes as a designer writes it: even repeats, staggered from round to round.
     pub symmetric: bool,

@@ -260,8 +260,11 @@ pub(super) fn best(
         let judge = Judge { bar: f64::INFINITY, level: true, ridge: Ridge::Dear, opens: false, tail: true };
         return lay(&options.hurried(), 0.0, judge, sink).filter(|laid| is_close(&laid.sheet));
     }
-    if options.tries == 1 {
-        return first(&changes[0], sink);
+    // Where the only one comes to no end, more are better than none.
+    if options.tries == 1
+        && let Some(laid) = first(&changes[0], sink)
+    {
+        return Some(laid);
     }
     let ease = options.ease();
     if part.is_huge() {
