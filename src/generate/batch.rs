@@ -1,5 +1,5 @@
 //! How many of the open loops are worked at once: a short row must not cross the end of a batch, or a cusp grows there that
-//! never gets one; so the end moves to where the fabric is most advanced.
+//! never gets one; so the end moves to where the fabric is most advanced, as seen one row ahead where rows lie far apart.
 
 /// Missing height by which the ring's start must lag behind its most advanced place to move the seam there.
 const SEAM: f64 = 0.4;
@@ -9,7 +9,7 @@ const LEAST: usize = 6;
 const REACH: usize = 2;
 const NEAR: usize = 2 * REACH + 1;
 
-/// The length of the next batch; `missing` has the missing heights of the open loops, in stitch heights.
+/// The length of the next batch; `missing` has the missing heights of the open loops, in stitch heights, with what the next row adds.
 pub(super) fn length(missing: &[f64]) -> usize {
     let n = missing.len();
     if n < LEAST {

@@ -76,8 +76,10 @@ impl Rows {
         let total = self.scale * (self.count + off_ends);
         let count = (total - off_ends + lost).round().max(1.0);
         let scale = total / (count + off_ends);
-        let (knots, farthest) = (self.knots.clone(), self.farthest.clone());
-        (count > self.count).then_some(Self { knots, scale, farthest, count, ..*self })
+        (count > self.count).then(|| {
+            let (knots, farthest) = (self.knots.clone(), self.farthest.clone());
+            Self { knots, scale, farthest, count, ..*self }
+        })
     }
 
     /// True where rows lie far closer on one side than on the other nearly everywhere, as in a sharp bend.

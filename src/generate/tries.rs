@@ -225,7 +225,7 @@ impl Part {
 }
 
 /// A try with its score.
-pub(super) type Made = (Score, Laid);
+type Made = (Score, Laid);
 
 /// False for a sheet so bad that anything else is worth a try.
 pub(super) fn is_sound(sheet: &Sheet) -> bool {
