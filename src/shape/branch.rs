@@ -2,34 +2,25 @@
 
 use super::beads::Beads;
 use super::solid::{Foot, Known, Side, Solid, around, lines};
-use super::stack::Stack;
-use super::{End, Jet, ParametricSurface};
+use super::{Jet, ParametricSurface};
 use crate::math;
 use glam::DVec3;
 use rayon::prelude::*;
 
 /// Places around a branch at which its rim is sought.
-const AROUND: usize = 64;
+pub(super) const AROUND: usize = 64;
 /// Fewest of them that are worth being handed to another thread.
-const TOGETHER: usize = 8;
+pub(super) const TOGETHER: usize = 8;
 /// Steps along a branch in which its way out of the parent is sought.
-const ALONG: u32 = 48;
+pub(super) const ALONG: u32 = 48;
 /// How far a branch that begins on the surface of its parent may be continued backward into it, in its own girths.
 const BACKWARD: f64 = 0.75;
-/// How much longer than on average a line of a limb may be for a change of u; how exactly feet are followed along it (in u
-/// and v); and steps by which the place is found where it leaves its parent.
-const STRETCH: f64 = 2.0;
-const NEARLY: f64 = 1e-5;
-const BETWEEN: u32 = 5;
-/// How far such a limb is continued back at most, against its distance; and least distance of its next row, in rows.
-const BACK: f64 = 2.5;
-const LEAST_STEP: f64 = 0.5;
 /// Depth (mm) at which tubes that touch begin to cross.
 const TOUCH: f64 = 1e-3;
 /// Share of a branch next to its rim that is not asked whether it lies in the parent.
 const RIM: f64 = 0.1;
 /// Reach (stitch widths) over which a rim is rounded: yarn makes no finer corners.
-const ROUNDED: f64 = 1.2;
+pub(super) const ROUNDED: f64 = 1.2;
 /// Halvings by which the way out of the parent is found between two looks, and the distance (in u) from it at which rounding
 /// decides on which side a place lies.
 const HALVINGS: u32 = 40;
@@ -63,10 +54,10 @@ pub enum Misfit {
 /// parent and m the mean of u0. The rows follow the rim at first and come level toward the tip, as b falls from 1 to 0.
 #[derive(Debug)]
 pub struct Branch<S> {
-    surface: S,
+    pub(super) surface: S,
     /// u0 at evenly spaced v, and its slope there.
     rim: Vec<[f64; 2]>,
-    mean: f64,
+    pub(super) mean: f64,
     /// b(u) = (1 - u) (1 - q u): with q = 1 rows come level soon, with q = 0 as late as can be.
     ease: f64,
     /// v at which the branch begins, in turns.
@@ -129,7 +120,7 @@ impl<S: ParametricSurface> Branch<S> {
     }
 
     /// A branch whose lines begin at the given places, on these feet, with a rim that is rounded and leveled.
-    fn along(
+    pub(super) fn along(
         surface: S,
         mut places: Vec<f64>,
         feet: &[Foot],
@@ -142,7 +133,7 @@ impl<S: ParametricSurface> Branch<S> {
     }
 
     /// A branch whose lines begin at the given places.
-    fn from_places(surface: S, places: &[f64]) -> Self {
+    pub(super) fn from_places(surface: S, places: &[f64]) -> Self {
         let mean = mean(places);
         let highest = places.iter().copied().fold(mean, f64::max);
         // Rows nowhere come nearer to each other than a fifth of their mean distance.
@@ -151,7 +142,7 @@ impl<S: ParametricSurface> Branch<S> {
     }
 
     /// Least and greatest place of the rim; a cubic may swing out a little between its places.
-    fn range(&self) -> [f64; 2] {
+    pub(super) fn range(&self) -> [f64; 2] {
         let swing = self.rim.iter().map(|[_, slope]| 0.5 * slope.abs()).fold(0.0, f64::max);
         let places = self.rim.iter().map(|[place, _]| *place);
         let (low, high) =
@@ -173,7 +164,7 @@ impl<S: ParametricSurface> Branch<S> {
     }
 
     /// u0 and its slope.
-    fn rim(&self, v: f64) -> (f64, f64) {
+    pub(super) fn rim(&self, v: f64) -> (f64, f64) {
         let count = self.rim.len();
         let x = (v - v.floor()) * count as f64;
         let before = (x as usize).min(count - 1);
@@ -183,134 +174,6 @@ impl<S: ParametricSurface> Branch<S> {
         let (square, cube) = (3.0 * rise - 2.0 * da - db, da + db - 2.0 * rise);
         (a + t * (da + t * (square + t * cube)), (da + t * (2.0 * square + t * 3.0 * cube)) * count as f64)
     }
-}
-
-impl Branch<Stack> {
-    /// Cuts off a branch that begins as a part of its parent's surface. It is a branch where it lies farther than `reach`
-    /// (mm) from the parent; from there it is continued straight back into it, and its rim is where it comes out.
-    /// Rows of samples lie `row` (mm) apart or more. Otherwise as [`Branch::new`].
-    pub(crate) fn leaving(
-        surface: Stack,
-        parent: &Solid<'_>,
-        [width, give]: [f64; 2],
-        reach: f64,
-        row: f64,
-    ) -> Result<Self, Misfit> {
-        let (mut clear, mut feet) = clear_of(&surface, parent, reach)?;
-        let girth = super::girth(&surface, mean(&clear), 32);
-        soften(&mut clear, ROUNDED * width * AROUND as f64 / girth.max(1e-9));
-        let clear = Branch::from_places(surface, &clear);
-        let turn = |k: usize, of: usize| k as f64 / of as f64;
-        let axis: DVec3 = (0..AROUND).map(|k| clear.jet(0.0, turn(k, AROUND)).du.normalize_or_zero()).sum();
-        let axis = axis.normalize_or_zero();
-        let back: Vec<f64> = feet
-            .par_iter_mut()
-            .with_min_len(TOGETHER)
-            .enumerate()
-            .map(|(k, foot)| way_back(clear.point(0.0, turn(k, AROUND)), axis, foot, parent, reach))
-            .collect();
-        let far = back.iter().copied().fold(0.5 * reach, f64::max) + 0.5 * reach;
-        // The way back and the branch as one tube.
-        let surface = &clear.surface;
-        let around = surface.rows().next().map_or(AROUND, <[DVec3]>::len);
-        let line = |u: f64| -> Vec<DVec3> { (0..around).map(|k| clear.point(u, turn(k, around))).collect() };
-        let first = line(0.0);
-        let mut rows = vec![first.iter().map(|point| *point - axis * far).collect(), first];
-        let closed = surface.ends()[1] == End::Closed;
-        // The rows of the branch where they lie, the first one not right beside its begin.
-        let (places, least) = (surface.places(), LEAST_STEP * row / surface.length());
-        let places = &places[..places.len() - usize::from(closed)];
-        let rest = &places[places.partition_point(|place| *place <= clear.mean + least)..];
-        rows.par_extend(rest.par_iter().map(|place| line((place - clear.mean) / (1.0 - clear.mean))));
-        let pole = closed.then(|| surface.point(1.0, 0.0));
-        let stack = Stack::of_rows(rows, [None, pole]).ok_or(Misfit::Inside)?;
-        let clear = stack.places().get(1).copied().unwrap_or(0.0);
-        let places: Vec<f64> = back.iter().map(|back| clear * (1.0 - back / far)).collect();
-        let girth = super::girth(&stack, mean(&places), 32);
-        let length = stack.length();
-        Ok(Self::along(stack, places, &feet, [girth, length], [width, give]))
-    }
-}
-
-/// How far straight back from a point of a branch its parent lies, which is no farther from it than `reach`; 0 where it
-/// lies beside that way. The foot moves there.
-fn way_back(point: DVec3, axis: DVec3, foot: &mut Foot, parent: &Solid<'_>, reach: f64) -> f64 {
-    let most = BACK * reach;
-    let look = |back: f64, foot: &Foot| parent.refine_to(point - axis * back, foot.u, foot.v, NEARLY);
-    let mut out = (0.0, look(0.0, foot));
-    let mut step = out.1.distance.max(0.0);
-    for _ in 0..BETWEEN {
-        let next = (out.0 + step).min(most);
-        let there = look(next, &out.1);
-        if there.distance <= 0.0 {
-            // Straight through the surface, or nearly.
-            let share = out.1.distance / (out.1.distance - there.distance).max(1e-12);
-            *foot = there;
-            return out.0 + (next - out.0) * share;
-        }
-        let fall = (out.1.distance - there.distance) / (next - out.0).max(1e-12);
-        step = 1.1 * there.distance / fall.max(0.25);
-        out = (next, there);
-        if there.distance < 1e-3 * reach {
-            *foot = there;
-            return next;
-        }
-        if next >= most {
-            break;
-        }
-    }
-    0.0
-}
-
-/// Where the lines of a surface lie farther than `reach` from the parent for the first time, and the feet there.
-fn clear_of(surface: &Stack, parent: &Solid<'_>, reach: f64) -> Result<(Vec<f64>, Vec<Foot>), Misfit> {
-    let length = super::length_along(surface, 0.0, 0.0..1.0, 8).max(1e-9);
-    let mut feet: Vec<Foot> = Vec::with_capacity(AROUND);
-    for k in 0..AROUND {
-        let begin = surface.point(0.0, k as f64 / AROUND as f64);
-        // Beside the foot of the line before, if it lies there.
-        let beside = feet.last().map(|foot| parent.refine_to(begin, foot.u, foot.v, NEARLY));
-        feet.push(beside.filter(|foot| foot.distance.abs() < reach).unwrap_or_else(|| parent.foot(begin)));
-    }
-    // Along a line from its begin: the last place within reach, `None` where it goes on to the end, and the foot there.
-    let follow = |(k, mut foot): (usize, Foot)| {
-        let v = k as f64 / AROUND as f64;
-        let next_to = |u: f64, foot: &Foot| parent.refine_to(surface.point(u, v), foot.u, foot.v, NEARLY);
-        let (mut near, mut far) = (0.0, None);
-        while near < 1.0 {
-            // As far as the line may go before it can be out of reach, if it does not stretch.
-            let safe = (reach - foot.distance.abs()) / (STRETCH * length);
-            let u = (near + safe.max(0.5 / f64::from(ALONG))).min(1.0);
-            let next = next_to(u, &foot);
-            if next.distance > reach {
-                far = Some((u, next.distance));
-                break;
-            }
-            (near, foot) = (u, next);
-        }
-        let Some(mut far) = far else { return (None, foot) };
-        for _ in 0..BETWEEN {
-            // The distance grows nearly evenly.
-            let share = (reach - foot.distance) / (far.1 - foot.distance).max(1e-12);
-            let middle = near + (far.0 - near) * share.clamp(0.05, 0.95);
-            let next = next_to(middle, &foot);
-            if next.distance > reach {
-                far = (middle, next.distance);
-            } else {
-                (near, foot) = (middle, next);
-            }
-        }
-        (Some(near), foot)
-    };
-    let followed = feet.into_par_iter().with_min_len(TOGETHER).enumerate().map(follow);
-    let (places, feet): (Vec<Option<f64>>, Vec<Foot>) = followed.unzip();
-    // A line that runs along the parent all the way leaves it where the last of the others does.
-    let last = places.iter().flatten().copied().fold(0.0, f64::max);
-    let lost = places.iter().filter(|place| place.is_none()).count();
-    if lost * 4 > AROUND || last >= 0.9 {
-        return Err(Misfit::Inside);
-    }
-    Ok((places.into_iter().map(|place| place.unwrap_or(last)).collect(), feet))
 }
 
 impl<S: ParametricSurface> ParametricSurface for Branch<S> {
@@ -445,7 +308,7 @@ impl Way {
 }
 
 /// Rounds off what is finer than `reach` places: binomial smoothing of that deviation.
-fn soften(places: &mut [f64], reach: f64) {
+pub(super) fn soften(places: &mut [f64], reach: f64) {
     let count = places.len();
     // One pass has a variance of 1/2.
     for _ in 0..((2.0 * reach * reach).round() as usize).min(4 * count) {
@@ -465,7 +328,7 @@ fn level(places: &mut [f64], give: f64) {
     }
 }
 
-fn mean(values: &[f64]) -> f64 {
+pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 

@@ -1,6 +1,7 @@
 //! Shapes as continuous surfaces: the trait that any parametric surface implements, and the object made of them.
 
 pub mod analytic;
+pub(crate) mod axis;
 pub(crate) mod beads;
 pub mod bezier;
 pub mod branch;
@@ -8,6 +9,7 @@ pub mod drift;
 pub mod export;
 mod fold;
 pub mod frame;
+mod leaving;
 pub mod loops;
 pub mod measure;
 mod meridian;

@@ -3,6 +3,7 @@
 use super::Mesh;
 use super::ends::{Ends, Tip};
 use super::levels::{Levels, Lines};
+use crate::shape::axis::{Axis, Station};
 use crate::shape::ring::{Ring, gap};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -10,20 +11,10 @@ use std::f64::consts::{PI, TAU};
 
 /// Samples of a line by which its tilt is seen, and how unevenly lines lie.
 const AROUND: usize = 16;
-/// Fewest lines that tell an axis.
-const FEWEST: usize = 5;
 /// Lines that are off their planes by less than this (rows) stay as they are.
 pub(super) const TILTED: f64 = 0.1;
 /// How often lines are laid flat at most: the middles of tilted lines are a little off the axis.
 const PASSES: u32 = 2;
-/// A line is part of a tube where the axis goes on by at least this share of the way to the next one, and where its points lie
-/// off its plane by at most this share of its radius.
-const ADVANCE: f64 = 0.5;
-const FARTHEST: f64 = 0.8;
-/// On the inner side of a bend planes come no closer than this share of their distance at the axis.
-const CLOSEST: f64 = 0.25;
-/// Where lines begin to be laid flat, they come closer by at most this share.
-const RAMP: f64 = 0.4;
 /// Laid flat once more, lines may lie this much less evenly: the axis of a tube stays where it is. Where a body bulges to one
 /// side, the middles of its lines are no axis, and run away.
 const RUNS_AWAY: f64 = 1.1;
@@ -33,9 +24,6 @@ const UNEVEN: f64 = 1.03;
 const SLIM: f64 = 8.0;
 /// The area between them stays the same within this share.
 const GAINED: f64 = 0.05;
-/// Newton steps to the plane of a point, and the share of a stretch to within which it is found.
-const STEPS: u32 = 6;
-const NEAR: f64 = 1e-6;
 /// How often the poles of a tube are moved to its axis, and from how far off it (rows).
 const AIMS: u32 = 3;
 const OFF: f64 = 0.3;
@@ -61,29 +49,6 @@ pub(super) struct Flat {
     pub(super) field: Vec<f64>,
 }
 
-/// The axis of a tube, from line to line.
-struct Axis {
-    stations: Vec<Station>,
-    /// By how much the lines are off their planes at most, where they are to be laid flat.
-    tilt: f64,
-}
-
-/// Where the axis passes a line.
-#[derive(Clone, Copy, Debug)]
-struct Station {
-    /// The level of the line.
-    level: f64,
-    /// Mean length along the surface up to here.
-    at: f64,
-    middle: DVec3,
-    /// By the length along the surface.
-    slope: DVec3,
-    /// Across the plane.
-    normal: DVec3,
-    /// How far lines are moved to their planes, from not at all to wholly.
-    weight: f64,
-}
-
 impl Levels<'_> {
     /// Lines along a limb.
     pub(super) fn along(&self, range: [f64; 2], course: &Course<'_>) -> Lines {
@@ -105,7 +70,7 @@ impl Levels<'_> {
                 Some((flat, _)) => (&flat.lines, flat.field.as_slice()),
                 None => (lines, self.field),
             };
-            let Some(axis) = Axis::of(lines).filter(|axis| axis.tilt >= TILTED * course.row) else { break };
+            let Some(axis) = axis(lines).filter(|axis| axis.tilt >= TILTED * course.row) else { break };
             let ends = [axis.stations.first()?.at, axis.stations.last()?.at];
             let vertices = (0..field.len()).into_par_iter().with_min_len(TOGETHER);
             let field: Vec<f64> = vertices.map(|v| axis.moved(self.mesh.point(v as u32), field[v])).collect();
@@ -129,7 +94,7 @@ impl Mesh {
         if ends.aims >= AIMS {
             return false;
         }
-        let Some(axis) = Axis::of(&flat.lines) else { return false };
+        let Some(axis) = axis(&flat.lines) else { return false };
         let mut moved = false;
         for side in [0, 1].into_iter().filter(|side| may[*side]) {
             let tip = if side == 0 { Some(&mut ends.start) } else { ends.others.first_mut() };
@@ -210,127 +175,7 @@ impl Spread {
     }
 }
 
-impl Axis {
-    /// The axis through the middles of lines; `None` where they are too few, or one lies where another does.
-    fn of(Lines { rings, levels }: &Lines) -> Option<Self> {
-        let samples: Vec<Vec<DVec3>> =
-            rings.iter().map(|(ring, phase)| ring.samples(AROUND, *phase)).collect();
-        let mut at = vec![0.0];
-        at.extend(samples.windows(2).map(|pair| gap(&pair[0], &pair[1]).0).scan(0.0, |sum, step| {
-            *sum += step;
-            Some(*sum)
-        }));
-        let rises = |values: &[f64]| values.windows(2).all(|pair| pair[1] > pair[0]);
-        if rings.len() < FEWEST || !rises(&at) || !rises(levels) {
-            return None;
-        }
-        let middles: Vec<DVec3> = rings.iter().map(|(ring, _)| ring.center()).collect();
-        let last = rings.len() - 1;
-        let step = |i: usize| (middles[i + 1] - middles[i]) / (at[i + 1] - at[i]);
-        let slope = |i: usize| match i {
-            0 => step(0),
-            i if i == last => step(last - 1),
-            // That of the parabola through three middles.
-            i => {
-                let share = (at[i] - at[i - 1]) / (at[i + 1] - at[i - 1]);
-                step(i - 1).lerp(step(i), share)
-            }
-        };
-        let station = |i: usize| {
-            let slope = slope(i);
-            let normal = slope.normalize_or_zero();
-            Station { level: levels[i], at: at[i], middle: middles[i], slope, normal, weight: 0.0 }
-        };
-        let mut axis = Self { stations: (0..=last).map(station).collect(), tilt: 0.0 };
-        axis.weigh(rings, &samples);
-        Some(axis)
-    }
-
-    /// Finds where lines are to be moved to their planes, and how far they are off.
-    fn weigh(&mut self, rings: &[(Ring, f64)], samples: &[Vec<DVec3>]) {
-        let last = self.stations.len() - 1;
-        // The ends stay as they are, and so does what is no tube.
-        let off = |i: usize| {
-            let station = &self.stations[i];
-            if i == 0 || i == last || station.slope.length() < ADVANCE {
-                return None;
-            }
-            let off = |p: &DVec3| self.place(*p, i, station.at).map(|at| (at - station.at).abs());
-            let most = samples[i].iter().try_fold(0.0, |most: f64, p| off(p).map(|off| most.max(off)))?;
-            (most <= FARTHEST * rings[i].0.length() / TAU).then_some(most)
-        };
-        let off: Vec<Option<f64>> = (0..=last).map(off).collect();
-        // From what stays on, weights rise as fast as the lines can be moved.
-        let mut weights = vec![1.0_f64; last + 1];
-        let mut ramp = |order: &mut dyn Iterator<Item = usize>| {
-            let (mut weight, mut before) = (0.0, self.stations[0].at);
-            for i in order {
-                let step = (self.stations[i].at - before).abs();
-                before = self.stations[i].at;
-                weight = off[i].map_or(0.0, |off: f64| (weight + RAMP * step / off.max(1e-9)).min(1.0));
-                weights[i] = weights[i].min(weight);
-            }
-        };
-        ramp(&mut (0..=last));
-        ramp(&mut (0..=last).rev());
-        let tilts = off.iter().zip(&weights).map(|(off, weight)| off.unwrap_or(0.0) * weight);
-        self.tilt = tilts.fold(0.0, f64::max);
-        for (station, weight) in self.stations.iter_mut().zip(weights) {
-            station.weight = weight;
-        }
-    }
-
-    /// Where along the tube a point of a level comes to lie.
-    fn moved(&self, p: DVec3, level: f64) -> f64 {
-        let last = self.stations.len() - 1;
-        let i = self.stations.partition_point(|other| other.level <= level).clamp(1, last) - 1;
-        let (a, b) = (&self.stations[i], &self.stations[i + 1]);
-        let t = (level - a.level) / (b.level - a.level);
-        let at = a.at + (b.at - a.at) * t;
-        let weight = a.weight + (b.weight - a.weight) * t;
-        if weight <= 0.0 || !(0.0..=1.0).contains(&t) {
-            return at;
-        }
-        self.place(p, i, at).map_or(at, |flat| at + (flat - at) * weight)
-    }
-
-    /// The place along the tube in whose plane a point lies, sought from another place behind station `i`; `None` where planes
-    /// come too close to each other.
-    fn place(&self, p: DVec3, mut i: usize, from: f64) -> Option<f64> {
-        let last = self.stations.len() - 2;
-        let mut at = from;
-        for _ in 0..STEPS {
-            i = i.min(last);
-            while i < last && self.stations[i + 1].at <= at {
-                i += 1;
-            }
-            while i > 0 && self.stations[i].at > at {
-                i -= 1;
-            }
-            let (a, b) = (&self.stations[i], &self.stations[i + 1]);
-            let width = b.at - a.at;
-            let t = ((at - a.at) / width).clamp(-1.0, 2.0);
-            let (t2, t3) = (t * t, t * t * t);
-            let rise = b.middle - a.middle;
-            let middle = a.middle
-                + rise * (3.0 * t2 - 2.0 * t3)
-                + (a.slope * (t - 2.0 * t2 + t3) + b.slope * (t3 - t2)) * width;
-            let slope = rise * (6.0 * (t - t2) / width)
-                + a.slope * (1.0 - 4.0 * t + 3.0 * t2)
-                + b.slope * (3.0 * t2 - 2.0 * t);
-            let turn = b.normal - a.normal;
-            let normal = a.normal + turn * t;
-            let arm = p - middle;
-            let (pace, rate) = (slope.dot(normal), arm.dot(turn) / width);
-            if pace - rate < CLOSEST * pace {
-                return None;
-            }
-            let step = arm.dot(normal) / (pace - rate);
-            at += step;
-            if step.abs() < NEAR * width {
-                break;
-            }
-        }
-        at.is_finite().then_some(at)
-    }
+/// The axis of a tube; its first and its last line stay as they are.
+fn axis(lines: &Lines) -> Option<Axis> {
+    Axis::of(&lines.rings, &lines.levels, [true; 2])
 }
