@@ -12,6 +12,8 @@ const SHARE: f64 = 0.02;
 /// as it is on a ball.
 const STEPS: usize = 4;
 const STAYS: f64 = 1e-3;
+/// A step that moves the ends of the axis by less than this (stitch widths) is the last one.
+const STILL: f64 = 1e-4;
 /// Points of a row that tell where the axis is; what is off by so many times the tolerance even so needs no steps.
 const FEW: usize = 32;
 const FAR: f64 = 8.0;
@@ -55,8 +57,15 @@ impl Stack {
             return None;
         }
         for _ in 0..STEPS {
+            let before = axis;
             axis = axis.moved(&rows, &meridian)?;
             meridian = axis.meridian(&rows, closed);
+            let still = |end: Option<&DVec2>| {
+                end.is_none_or(|end| axis.at(end.x).distance(before.at(end.x)) <= STILL * width)
+            };
+            if still(meridian.first()) && still(meridian.last()) {
+                break;
+            }
         }
         for (i, row) in rows.iter().enumerate() {
             let most = limit(meridian[i].y);
@@ -96,6 +105,11 @@ impl Axis {
         let centers = rows.iter().zip(&areas).map(|(row, area)| center(row) * area.length());
         let origin = centers.sum::<DVec3>() / weight;
         (way != DVec3::ZERO).then_some(Self { origin, way })
+    }
+
+    /// A place of the axis.
+    fn at(&self, height: f64) -> DVec3 {
+        self.origin + self.way * height
     }
 
     /// Height along the axis and distance from it; and the direction away from it.
