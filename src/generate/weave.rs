@@ -431,8 +431,8 @@ impl<'s> Weaver<'s> {
         if !rules.may_pay(&missing) {
             return;
         }
-        let extra: Vec<f64> =
-            tops.iter().map(|id| self.ends.price(self.sheet.v[*id as usize], size)).collect();
+        let places: Vec<f64> = tops.iter().map(|id| self.sheet.v[*id as usize]).collect();
+        let extra = self.ends.prices(&places, size);
         let mut runs = Vec::new();
         self.planner.solve(&missing, &extra, &stretch.cut, &rules, &mut runs);
         for run in runs.iter().rev() {
