@@ -16,10 +16,11 @@ const FEW_SWEEPS: u32 = 5;
 /// Parts of so many stitches have few tries.
 const MANY: usize = 50_000;
 /// Large parts settle by bands of rows, so many nodes at a time, which the processor keeps near; and each band with so many rows
-/// of the next, which then settle once more: what hangs over its edge is far enough away. A band has many more rows than that.
+/// of the next, which then settle once more: what hangs over its edge is far enough away. A band has several times as many rows,
+/// and of long ones no more, for they would not stay near.
 const BAND: usize = 1 << 16;
 const OVERLAP: usize = 10;
-const ROWS: usize = 8 * OVERLAP;
+const ROWS: usize = 4 * OVERLAP;
 /// Sweeps over the whole after which a try is judged.
 const FIRST_SWEEPS: u32 = 4;
 
