@@ -199,9 +199,11 @@ impl Part {
     fn is_done(self, best: &Made, tries: usize, asked: usize) -> bool {
         let score = &best.0;
         let small = self.expected < SMALL;
+        // Of the usual ones each is made once.
         let most = match self.harsh {
-            _ if small || score.fit > BAD => asked + MOST_MORE,
-            true => asked + MORE,
+            _ if score.fit > BAD => asked + MOST_MORE,
+            _ if small => self.changes().len().min(asked + MOST_MORE),
+            true => self.changes().len().min(asked + MORE),
             false => asked,
         };
         let good = match self.harsh || small {
@@ -249,7 +251,7 @@ pub(super) fn best(
     even: impl Fn(&Sink<'_>) -> Option<Laid>,
 ) -> Option<Laid> {
     let changes = part.changes();
-    let asked = if part.is_large() { 1 } else { options.tries as usize };
+    let asked = if part.is_large() { 1 } else { changes.len().min(options.tries as usize) };
     let attempt = |change: &Change, bar: f64, ridge: Ridge, opens: bool, sink: &Sink<'_>| {
         let judge =
             Judge { bar, level: change.level, ridge, opens: change.opens || opens, tail: change.tail };
@@ -292,7 +294,7 @@ pub(super) fn best(
             _ => f64::INFINITY,
         };
         let make = |index: usize, sink: &Sink<'_>| {
-            let rescue = index.checked_sub(asked.min(changes.len()));
+            let rescue = index.checked_sub(asked);
             // Every second one may have increases on others, and the other way round the second time.
             let stacks = rescue.is_some_and(|index| (index + index / LAST.len()) % 2 == 1);
             let ridge = if stacks && bad { Ridge::Cheap } else { Ridge::Dear };
