@@ -211,7 +211,7 @@ impl File {
                 "the loops of a tube follow each other along it",
             );
         };
-        stack.revolve(gauge.width, &[]);
+        stack.revolve(gauge.width, &[], &[]);
         let ends = stack.ends();
         let tubes = vec![Tube::new("trunk", Box::new(stack), ends)];
         Ok(Shape { name: self.name, gauge, tubes, wishes: Wishes::default() })

@@ -17,6 +17,8 @@ const STILL: f64 = 1e-4;
 /// Points of a row that tell where the axis is; what is off by so many times the tolerance even so needs no steps.
 const FEW: usize = 32;
 const FAR: f64 = 8.0;
+/// One of so many points of a row tell how it runs.
+const TELLING: usize = 4;
 /// Stretches of the meridian to both sides on which the foot of a point is sought.
 const BESIDE: usize = 3;
 
@@ -25,10 +27,11 @@ impl Stack {
     /// The lines that it is a stack of need not be level: it is the surface that counts. True when it is one.
     ///
     /// `corners` are those of the triangles that it was cut from, if it was: the lines lie on the triangles, a little inside
-    /// of what these stand for.
-    pub(crate) fn revolve(&mut self, width: f64, corners: &[DVec3]) -> bool {
-        let Some((axis, meridian, first)) = self.round(width) else { return false };
-        let meridian = drawn_to(&meridian, corners.iter().map(|p| axis.split(*p).0), TOLERANCE * width);
+    /// of what these stand for. What lies in `balls` (middle, radius) is made up, and tells nothing.
+    pub(crate) fn revolve(&mut self, width: f64, corners: &[DVec3], balls: &[(DVec3, f64)]) -> bool {
+        let Some((axis, meridian, first)) = self.round(width, balls) else { return false };
+        let corners = corners.iter().filter(|p| is_given(**p, balls));
+        let meridian = drawn_to(&meridian, corners.map(|p| axis.split(*p).0), TOLERANCE * width);
         let around = self.rows().next().map_or(1, <[DVec3]>::len);
         // Clockwise seen from the end of the tube.
         let second = -axis.way.cross(first);
@@ -42,10 +45,13 @@ impl Stack {
     }
 
     /// The axis of a tube that is round within the tolerance, its meridian, and where its first line lies around it.
-    fn round(&self, width: f64) -> Option<(Axis, Vec<DVec2>, DVec3)> {
+    fn round(&self, width: f64, balls: &[(DVec3, f64)]) -> Option<(Axis, Vec<DVec2>, DVec3)> {
         let rows: Vec<&[DVec3]> = self.rows().collect();
         let closed = self.ends().map(|end| end == End::Closed);
         let mut axis = Axis::of(&rows)?;
+        let given: Vec<Vec<DVec3>> = rows.iter().map(|row| given(row, balls)).collect();
+        let rows: Vec<&[DVec3]> =
+            if balls.is_empty() { rows } else { given.iter().map(Vec::as_slice).collect() };
         // Most tubes are not round by far.
         let limit = |radius: f64| (TOLERANCE * width).max(SHARE * radius);
         let mut meridian = axis.meridian(&rows, closed);
@@ -74,9 +80,20 @@ impl Stack {
             }
         }
         let widest = (0..rows.len()).max_by(|a, b| meridian[*a].y.total_cmp(&meridian[*b].y))?;
-        let first = rows[widest].first().map(|p| axis.split(*p).1)?;
+        let first = self.rows().nth(widest)?.first().map(|p| axis.split(*p).1)?;
         (first != DVec3::ZERO).then_some((axis, meridian, first))
     }
+}
+
+/// True outside of all balls.
+fn is_given(p: DVec3, balls: &[(DVec3, f64)]) -> bool {
+    balls.iter().all(|(middle, radius)| p.distance_squared(*middle) > radius * radius)
+}
+
+/// The points of a row outside of all balls, if they are enough to tell how it runs.
+fn given(row: &[DVec3], balls: &[(DVec3, f64)]) -> Vec<DVec3> {
+    let given: Vec<DVec3> = row.iter().copied().filter(|p| is_given(*p, balls)).collect();
+    if TELLING * given.len() < row.len() { row.to_vec() } else { given }
 }
 
 /// Some points of a row, evenly around it.
@@ -297,13 +314,13 @@ mod tests {
     #[test]
     fn what_is_round_gets_its_axis_though_its_lines_are_tilted() {
         let (axis, mut stack) = leaning(1.0);
-        assert!(stack.revolve(5.0, &[]) && is_revolution(&stack));
+        assert!(stack.revolve(5.0, &[], &[]) && is_revolution(&stack));
         for u in [0.0, 1.0] {
             let off = axis.split(stack.point(u, 0.3)).0.y;
             assert!(off < 0.1, "{off}");
         }
         let (_, mut stack) = leaning(0.9);
-        assert!(!stack.revolve(5.0, &[]));
+        assert!(!stack.revolve(5.0, &[], &[]));
     }
 
     #[test]

@@ -387,7 +387,7 @@ impl Mesh {
             let none = Fault::NoRows { at: self.middle(tip) };
             let mut stack = stacked(&lines.rings, poles, seam, plan).ok_or(none)?;
             let whole = parent.is_none() && division.is_none();
-            if whole && !stack.revolve(plan.gauge.width, &self.points) && ends.whole {
+            if whole && !stack.revolve(plan.gauge.width, &self.points, &self.patches) && ends.whole {
                 if let Some(flat) = levels.laid_flat(given, &lines, &course) {
                     if plan.field == Field::Harmonic && self.aim(ends, free(plan), &flat, row) {
                         return Ok(None);

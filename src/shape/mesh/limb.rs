@@ -442,6 +442,10 @@ impl Mesh {
             known.resize(mesh.points.len(), DVec3::ZERO);
             mesh.normals = known;
         }
+        let middle = self.center(edge);
+        let radius = edge.iter().map(|v| self.point(*v).distance(middle)).fold(0.0, f64::max);
+        mesh.patches.clone_from(&self.patches);
+        mesh.patches.push((middle, radius));
         (mesh, place)
     }
 }

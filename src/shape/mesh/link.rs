@@ -32,6 +32,7 @@ impl Mesh {
             leaving: Vec::new(),
             boundaries: Vec::new(),
             normals: Vec::new(),
+            patches: Vec::new(),
         };
         mesh.connect();
         mesh

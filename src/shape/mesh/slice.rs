@@ -75,7 +75,7 @@ impl Mesh {
         }
         let around = samples_around(rings.iter(), plan);
         let mut stack = Stack::new(&rings, poles, around).ok_or(Fault::NoRows { at: last })?;
-        stack.revolve(plan.gauge.width, &self.points);
+        stack.revolve(plan.gauge.width, &self.points, &self.patches);
         Ok(Cut {
             pieces: vec![Piece {
                 name: "trunk".to_owned(),
