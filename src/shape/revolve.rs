@@ -3,14 +3,14 @@
 use super::End;
 use super::stack::Stack;
 use crate::math::{TAU, sin_cos};
-use glam::{DVec2, DVec3};
+use glam::{DMat4, DVec2, DVec3, DVec4};
 
 /// Greatest distance from a round tube, in stitch widths, and as a share of the radius for tubes of many stitches.
 const TOLERANCE: f64 = 0.2;
 const SHARE: f64 = 0.02;
 /// Steps in which the axis is moved to where the surface lies best around it; and how firmly it stays where that is all one,
 /// as it is on a ball.
-const STEPS: usize = 4;
+const STEPS: usize = 16;
 const STAYS: f64 = 1e-3;
 /// A step that moves the ends of the axis by less than this (stitch widths) is the last one.
 const STILL: f64 = 1e-4;
@@ -27,10 +27,10 @@ impl Stack {
     /// The lines that it is a stack of need not be level: it is the surface that counts. True when it is one.
     ///
     /// `corners` are those of the triangles that it was cut from, if it was: the lines lie on the triangles, a little inside
-    /// of what these stand for. What lies in `balls` (middle, radius) is made up, and tells nothing.
-    pub(crate) fn revolve(&mut self, width: f64, corners: &[DVec3], balls: &[(DVec3, f64)]) -> bool {
-        let Some((axis, meridian, first)) = self.round(width, balls) else { return false };
-        let corners = corners.iter().filter(|p| is_given(**p, balls));
+    /// of what these stand for. What was mended is made up, and tells nothing.
+    pub(crate) fn revolve(&mut self, width: f64, corners: &[DVec3], mended: &[Mended]) -> bool {
+        let Some((axis, meridian, first)) = self.round(width, mended) else { return false };
+        let corners = corners.iter().filter(|p| is_given(**p, mended));
         let meridian = drawn_to(&meridian, corners.map(|p| axis.split(*p).0), TOLERANCE * width);
         let around = self.rows().next().map_or(1, <[DVec3]>::len);
         // Clockwise seen from the end of the tube.
@@ -45,13 +45,13 @@ impl Stack {
     }
 
     /// The axis of a tube that is round within the tolerance, its meridian, and where its first line lies around it.
-    fn round(&self, width: f64, balls: &[(DVec3, f64)]) -> Option<(Axis, Vec<DVec2>, DVec3)> {
+    fn round(&self, width: f64, mended: &[Mended]) -> Option<(Axis, Vec<DVec2>, DVec3)> {
         let rows: Vec<&[DVec3]> = self.rows().collect();
         let closed = self.ends().map(|end| end == End::Closed);
         let mut axis = Axis::of(&rows)?;
-        let given: Vec<Vec<DVec3>> = rows.iter().map(|row| given(row, balls)).collect();
+        let given: Vec<Vec<DVec3>> = rows.iter().map(|row| given(row, mended)).collect();
         let rows: Vec<&[DVec3]> =
-            if balls.is_empty() { rows } else { given.iter().map(Vec::as_slice).collect() };
+            if mended.is_empty() { rows } else { given.iter().map(Vec::as_slice).collect() };
         // Most tubes are not round by far.
         let limit = |radius: f64| (TOLERANCE * width).max(SHARE * radius);
         let mut meridian = axis.meridian(&rows, closed);
@@ -85,14 +85,43 @@ impl Stack {
     }
 }
 
-/// True outside of all balls.
-fn is_given(p: DVec3, balls: &[(DVec3, f64)]) -> bool {
-    balls.iter().all(|(middle, radius)| p.distance_squared(*middle) > radius * radius)
+/// Where a surface was closed: in a ball, beyond a plane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mended {
+    middle: DVec3,
+    radius: f64,
+    /// Across the plane, and how far beyond the middle it lies.
+    way: DVec3,
+    low: f64,
 }
 
-/// The points of a row outside of all balls, if they are enough to tell how it runs.
-fn given(row: &[DVec3], balls: &[(DVec3, f64)]) -> Vec<DVec3> {
-    let given: Vec<DVec3> = row.iter().copied().filter(|p| is_given(*p, balls)).collect();
+impl Mended {
+    /// The place within a closed line, toward a point over it.
+    pub(crate) fn within(edge: &[DVec3], apex: DVec3) -> Self {
+        let middle = edge.iter().sum::<DVec3>() / edge.len().max(1) as f64;
+        let arms = || edge.iter().map(|p| *p - middle);
+        let way =
+            arms().zip(arms().cycle().skip(1)).map(|(a, b)| a.cross(b)).sum::<DVec3>().normalize_or_zero();
+        let way = if way.dot(apex - middle) < 0.0 { -way } else { way };
+        let radius = arms().map(DVec3::length).fold(0.0, f64::max);
+        let low = arms().map(|arm| arm.dot(way)).fold(0.0, f64::min);
+        Self { middle, radius, way, low }
+    }
+
+    fn holds(&self, p: DVec3) -> bool {
+        let arm = p - self.middle;
+        arm.length_squared() <= self.radius * self.radius && arm.dot(self.way) >= self.low
+    }
+}
+
+/// True where nothing was mended.
+fn is_given(p: DVec3, mended: &[Mended]) -> bool {
+    !mended.iter().any(|place| place.holds(p))
+}
+
+/// The points of a row where nothing was mended, if they are enough to tell how it runs.
+fn given(row: &[DVec3], mended: &[Mended]) -> Vec<DVec3> {
+    let given: Vec<DVec3> = row.iter().copied().filter(|p| is_given(*p, mended)).collect();
     if TELLING * given.len() < row.len() { row.to_vec() } else { given }
 }
 
@@ -152,29 +181,33 @@ impl Axis {
     /// The axis around which the rows lie nearer to the meridian: a step of Gauss and Newton.
     ///
     /// Moved by t and tilted by w, both across it, it sees a point at height h and radius r in direction e at h + r e w and
-    /// r - e t - h e w. All around a row e e' is half the identity across the axis, so the equations are two by two.
+    /// r - e t - h e w.
     fn moved(self, rows: &[&[DVec3]], meridian: &[DVec2]) -> Option<Self> {
-        let (mut tt, mut tw, mut ww) = (0.0, 0.0, 0.0);
-        let (mut shift, mut tilt) = (DVec3::ZERO, DVec3::ZERO);
+        let across = self.way.any_orthonormal_pair();
+        let (mut matrix, mut right) = (DMat4::ZERO, DVec4::ZERO);
         for (i, row) in rows.iter().enumerate() {
             for p in few(row) {
                 let (place, out) = self.split(*p);
                 let (off, normal) = foot(meridian, i, place);
-                let off = off.dot(normal);
-                let turn = normal.x * place.y - normal.y * place.x;
+                let e = DVec2::new(out.dot(across.0), out.dot(across.1));
+                let (t, w) = (e * normal.y, e * (normal.y * place.x - normal.x * place.y));
+                let slope = DVec4::new(t.x, t.y, w.x, w.y);
                 // Samples are denser where a row is short.
-                let weight = place.y;
-                tt += 0.5 * weight * normal.y * normal.y;
-                tw += 0.5 * weight * normal.y * turn;
-                ww += 0.5 * weight * turn * turn;
-                shift += out * (weight * normal.y * off);
-                tilt -= out * (weight * turn * off);
+                let weighted = slope * place.y;
+                matrix += DMat4::from_cols(
+                    weighted * slope.x,
+                    weighted * slope.y,
+                    weighted * slope.z,
+                    weighted * slope.w,
+                );
+                right += weighted * off.dot(normal);
             }
         }
-        let (tt, ww) = (tt * (1.0 + STAYS), ww * (1.0 + STAYS));
-        let determinant = tt * ww - tw * tw;
-        let origin = self.origin + (shift * ww + tilt * tw) / determinant;
-        let way = (self.way + (tilt * tt + shift * tw) / determinant).normalize_or_zero();
+        let diagonal = DVec4::new(matrix.x_axis.x, matrix.y_axis.y, matrix.z_axis.z, matrix.w_axis.w) * STAYS;
+        let step = (matrix + DMat4::from_diagonal(diagonal)).inverse() * right;
+        let along = |x: f64, y: f64| across.0 * x + across.1 * y;
+        let origin = self.origin + along(step.x, step.y);
+        let way = (self.way + along(step.z, step.w)).normalize_or_zero();
         (origin.is_finite() && way != DVec3::ZERO).then_some(Self { origin, way })
     }
 }

@@ -9,6 +9,7 @@ use super::soup::{NONE, Soup, meeting, rising};
 use super::way::Way;
 use super::{Fault, Field, Mesh};
 use crate::math::atan2;
+use crate::shape::revolve::Mended;
 use crate::shape::ring::Ring;
 use crate::shape::stack::Stack;
 use glam::DVec3;
@@ -442,10 +443,9 @@ impl Mesh {
             known.resize(mesh.points.len(), DVec3::ZERO);
             mesh.normals = known;
         }
-        let middle = self.center(edge);
-        let radius = edge.iter().map(|v| self.point(*v).distance(middle)).fold(0.0, f64::max);
+        let edge: Vec<DVec3> = edge.iter().map(|v| self.point(*v)).collect();
         mesh.patches.clone_from(&self.patches);
-        mesh.patches.push((middle, radius));
+        mesh.patches.push(Mended::within(&edge, apex));
         (mesh, place)
     }
 }

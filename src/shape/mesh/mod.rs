@@ -28,6 +28,7 @@ pub use field::Field;
 pub use gate::Fault;
 pub use soup::Soup;
 
+use crate::shape::revolve::Mended;
 use glam::DVec3;
 
 /// What was repaired; all of it leaves the shape as it is.
@@ -64,6 +65,6 @@ pub struct Mesh {
     /// Where the mesh was made coarser: the normals that its vertices had before, for edges cut the surface short. Zero where
     /// they are not known; empty where none is.
     normals: Vec<DVec3>,
-    /// Balls in which limbs were cut off and the surface was closed: middle, and radius in mm.
-    patches: Vec<(DVec3, f64)>,
+    /// Where limbs were cut off and the surface was closed.
+    patches: Vec<Mended>,
 }
