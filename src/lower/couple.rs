@@ -13,23 +13,29 @@ const MOST_WORK: usize = 4_000_000;
 /// The closed cycle of places nearest to a ring of points: indices into `places` in the order of the ring, none twice.
 pub(super) fn cycle(ring: &[DVec3], places: &[DVec3]) -> Vec<usize> {
     let mut cycle: Vec<usize> = Vec::new();
+    let mut squares: Vec<f64> = Vec::with_capacity(places.len());
     let mut close: Vec<usize> = Vec::new();
     for (index, from) in ring.iter().enumerate() {
         let to = ring[(index + 1) % ring.len()];
         // What is nearest to a point between the two is nearly so to their middle.
         let middle = from.midpoint(to);
-        let least =
-            places.iter().map(|place| place.distance_squared(middle)).fold(f64::INFINITY, f64::min).sqrt();
+        squares.clear();
+        squares.extend(places.iter().map(|place| place.distance_squared(middle)));
+        let least = squares.iter().copied().fold(f64::INFINITY, f64::min).sqrt();
         let reach = (least + from.distance(to)) * (1.0 + 1e-9);
+        let within = squares.iter().enumerate().filter(|(_, square)| **square <= reach * reach);
         close.clear();
-        close.extend(
-            (0..places.len()).filter(|place| places[*place].distance_squared(middle) <= reach * reach),
-        );
+        close.extend(within.map(|(place, _)| place));
         for k in 0..BETWEEN {
             let point = from.lerp(to, k as f64 / BETWEEN as f64);
-            let near = close.iter().copied().min_by(|a, b| {
-                places[*a].distance_squared(point).total_cmp(&places[*b].distance_squared(point))
-            });
+            let mut near = None;
+            let mut least = f64::INFINITY;
+            for &place in &close {
+                let square = places[place].distance_squared(point);
+                if square < least {
+                    (near, least) = (Some(place), square);
+                }
+            }
             let Some(near) = near else { return cycle };
             if !cycle.contains(&near) {
                 cycle.push(near);
@@ -59,11 +65,11 @@ pub(super) fn couple(ring: &[DVec3], other: &[DVec3]) -> Vec<usize> {
     let least: Vec<f64> =
         distances.chunks_exact(m).map(|row| row.iter().copied().fold(f64::INFINITY, f64::min)).collect();
     let mut rest = vec![0.0; n + 1];
-    let mut table = Vec::new();
+    let mut table = Table::default();
     let mut best: Option<(f64, usize, usize, Groups)> = None;
     // What the start at the nearest point costs, no other one need exceed.
     let first = straight([n, m], most, (f64::INFINITY, &rest), &mut table, |i, j| {
-        distances.get(i * m + (around + j) % m).copied().unwrap_or(f64::INFINITY)
+        distances[i * m + if around + j < m { around + j } else { around + j - m }]
     });
     let mut bound = first.map_or(f64::INFINITY, |first| first.0 * (1.0 + 1e-9) + 1e-9);
     // A group of points may lie across the place where the ring is cut.
@@ -103,53 +109,101 @@ pub(super) fn couple(ring: &[DVec3], other: &[DVec3]) -> Vec<usize> {
     partner
 }
 
+/// The table of a coupling: for each row the places that are worth anything, and for each place the least total distance up to
+/// there, with the group that ends there.
+#[derive(Default)]
+struct Table {
+    cost: Vec<(f64, u32, u32)>,
+    /// The first place of each row that has a cost, and the one behind the last.
+    spans: Vec<[usize; 2]>,
+    width: usize,
+}
+
+const NOTHING: (f64, u32, u32) = (f64::INFINITY, 0, 0);
+
+impl Table {
+    /// No place has a cost but the first one.
+    fn clear(&mut self, [n, m]: [usize; 2]) {
+        self.width = m + 1;
+        // What lies outside of the spans is never looked at, so it may stay as it is.
+        if self.cost.len() < (n + 1) * self.width {
+            self.cost.resize((n + 1) * self.width, NOTHING);
+        }
+        self.spans.clear();
+        self.spans.resize(n + 1, [0; 2]);
+        self.spans[0] = [0, 1];
+        self.cost[0] = (0.0, 0, 0);
+    }
+
+    fn get(&self, i: usize, j: usize) -> (f64, u32, u32) {
+        let [first, end] = self.spans[i];
+        if (first..end).contains(&j) { self.cost[i * self.width + j] } else { NOTHING }
+    }
+
+    /// A way to a place by a group of so many.
+    fn offer(&mut self, [i, j]: [usize; 2], cost: f64, [mine, theirs]: [usize; 2]) {
+        let [first, end] = self.spans[i];
+        let row = &mut self.cost[i * self.width..(i + 1) * self.width];
+        if first == end {
+            self.spans[i] = [j, j + 1];
+            row[j] = NOTHING;
+        } else if j >= end {
+            row[end..=j].fill(NOTHING);
+            self.spans[i][1] = j + 1;
+        } else if j < first {
+            row[j..first].fill(NOTHING);
+            self.spans[i][0] = j;
+        }
+        if cost < row[j].0 {
+            row[j] = (cost, mine as u32, theirs as u32);
+        }
+    }
+}
+
 /// The best grouping of two open rows: total distance, and the sizes of groups. `None` where it would cost more than the
 /// bound; from each point of the first on, the rest costs at least `rest`. The table is room to work in.
 fn straight(
     [n, m]: [usize; 2],
     most: usize,
     (bound, rest): (f64, &[f64]),
-    cost: &mut Vec<(f64, u32, u32)>,
+    table: &mut Table,
     distance: impl Fn(usize, usize) -> f64,
 ) -> Option<(f64, Groups)> {
-    let width = m + 1;
-    cost.clear();
-    cost.resize((n + 1) * width, (f64::INFINITY, 0, 0));
-    cost[0].0 = 0.0;
+    table.clear([n, m]);
     for i in 0..n {
-        for j in 0..m {
-            let here = cost[i * width + j].0;
-            if here + rest[i] > bound || here == f64::INFINITY {
+        let [first, end] = table.spans[i];
+        for j in first..end.min(m) {
+            let here = table.cost[i * table.width + j].0;
+            if here == f64::INFINITY {
                 continue;
             }
-            let mut offer = |mine: usize, theirs: usize, sum: f64| {
-                let place = &mut cost[(i + mine) * width + j + theirs];
-                if here + sum < place.0 {
-                    *place = (here + sum, mine as u32, theirs as u32);
+            let mut offer = |mine: usize, theirs: usize, cost: f64| {
+                if cost + rest[i + mine] <= bound {
+                    table.offer([i + mine, j + theirs], cost, [mine, theirs]);
                 }
             };
             let mut sum = 0.0;
             for k in 0..most.min(n - i) {
                 sum += distance(i + k, j);
-                offer(k + 1, 1, sum);
+                offer(k + 1, 1, here + sum);
             }
             let mut sum = 0.0;
             for k in 0..most.min(m - j) {
                 sum += distance(i, j + k);
                 if k > 0 {
-                    offer(1, k + 1, sum);
+                    offer(1, k + 1, here + sum);
                 }
             }
         }
     }
-    let total = cost[n * width + m].0;
+    let total = table.get(n, m).0;
     if total > bound {
         return None;
     }
     let mut groups = Vec::with_capacity(n.max(m));
     let (mut i, mut j) = (n, m);
     while (i, j) != (0, 0) {
-        let (value, mine, theirs) = cost[i * width + j];
+        let (value, mine, theirs) = table.get(i, j);
         let (mine, theirs) = (mine as usize, theirs as usize);
         if value == f64::INFINITY || mine == 0 {
             return None;
