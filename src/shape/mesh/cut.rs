@@ -123,13 +123,20 @@ impl Mesh {
             self.holes(plan)?;
             return self.cut_coarse(plan, &mut progress);
         }
-        // Most often there is no fault, so the rest does not wait for the search.
-        let mut holes = Ok(());
+        // Most often there is no fault, so the rest does not wait for the search: that begins with the first step, when what all
+        // else waits for is there.
+        let mut holes = None;
         let cut = rayon::in_place_scope(|scope| {
-            scope.spawn(|_| holes = self.holes(plan));
+            let mut place = Some(&mut holes);
+            let mut progress = |done, all| {
+                if let Some(place) = place.take() {
+                    scope.spawn(|_| *place = Some(self.holes(plan)));
+                }
+                progress(done, all);
+            };
             self.cut_coarse(plan, &mut progress)
         });
-        holes?;
+        holes.unwrap_or_else(|| self.holes(plan))?;
         cut
     }
 
@@ -186,11 +193,9 @@ impl Mesh {
         progress: &mut impl FnMut(u64, u64),
     ) -> Result<Cut, Fault> {
         let row = plan.gauge.height;
-        let mut flows = None;
-        let mut ends = rayon::in_place_scope(|scope| {
-            scope.spawn(|_| flows = Some(Flows::new(self, strict)));
-            Ends::find(self, row, plan.start, &plan.poles)
-        });
+        let find = || Ends::find(self, row, plan.start, &plan.poles);
+        let (mut ends, flows) = rayon::join(find, || Flows::new(self, strict));
+        let mut flows = Some(flows);
         ends.strict = strict;
         if ends.others.is_empty() {
             return Err(Fault::NoEnds { at: self.middle(&ends.start) });
