@@ -89,11 +89,6 @@ impl Leaving {
     /// because they follow what it grows from; `None` where it has no axis.
     fn flat(&self) -> Option<(Stack, Vec<f64>)> {
         let limb = Upright::new(self)?;
-        let lines: Vec<Vec<Knot>> = (0..limb.around)
-            .into_par_iter()
-            .with_min_len(TOGETHER)
-            .map(|k| limb.line(k))
-            .collect::<Option<_>>()?;
         let rim = |k: usize| {
             let begin = self.clear.rim(turn(k, AROUND)).0;
             limb.at(self.clear.surface.point(begin, turn(k, AROUND)), begin) - self.back[k] * limb.pace
@@ -104,9 +99,13 @@ impl Leaving {
         let before = ((first - bottom) / self.row).ceil().max(1.0);
         let planes = (0..before as usize).map(|i| bottom + (first - bottom) * i as f64 / before);
         let planes: Vec<f64> = planes.chain(limb.axis.stations.iter().map(|station| station.at)).collect();
-        let row =
-            |plane: &f64| lines.iter().enumerate().map(|(k, line)| limb.point(*plane, k, line)).collect();
-        let rows: Vec<Vec<DVec3>> = planes.par_iter().map(row).collect();
+        let lines: Vec<Vec<DVec3>> = (0..limb.around)
+            .into_par_iter()
+            .with_min_len(TOGETHER)
+            .map(|k| Some(limb.points(&planes, k, &limb.line(k)?)))
+            .collect::<Option<_>>()?;
+        let row = |i: usize| lines.iter().map(|line| line[i]).collect();
+        let rows: Vec<Vec<DVec3>> = (0..planes.len()).map(row).collect();
         let surface = &self.clear.surface;
         let pole = (surface.ends()[1] == End::Closed).then(|| surface.point(1.0, 0.0));
         let count = rows.len() + usize::from(pole.is_some());
@@ -177,23 +176,26 @@ impl<'l> Upright<'l> {
         let next = begin + LEAST_STEP * self.of.row / surface.length();
         let rest = self.places.partition_point(|place| *place <= next);
         let knot = |p: DVec3, u: f64| Knot { at: self.at(p, u), u };
-        let rest = (rest..self.rows.len()).map(|i| knot(self.rows[i][k], self.places[i]));
-        let line: Vec<Knot> = std::iter::once(knot(surface.point(begin, v), begin)).chain(rest).collect();
+        let mut line = Vec::with_capacity(self.rows.len() + 1 - rest);
+        line.push(knot(surface.on_line(begin, k), begin));
+        line.extend((rest..self.rows.len()).map(|i| knot(self.rows[i][k], self.places[i])));
         line.is_sorted_by(|a, b| a.at < b.at).then_some(line)
     }
 
-    /// Where the `k`-th line passes a plane.
-    fn point(&self, plane: f64, k: usize, line: &[Knot]) -> DVec3 {
-        let v = turn(k, self.around);
+    /// Where the `k`-th line passes planes, which rise.
+    fn points(&self, planes: &[f64], k: usize, line: &[Knot]) -> Vec<DVec3> {
         let surface = &self.of.clear.surface;
-        let i = line.partition_point(|knot| knot.at <= plane);
-        let Some(a) = i.checked_sub(1).map(|i| line[i]) else {
-            return surface.point(line[0].u, v) - self.of.away * ((line[0].at - plane) / self.pace);
+        let (begin, end) = (surface.on_line(line[0].u, k), self.rows[self.rows.len() - 1][k]);
+        let mut next = 0;
+        let point = |plane: &f64| {
+            next += line[next..].iter().take_while(|knot| knot.at <= *plane).count();
+            match (next.checked_sub(1).map(|i| line[i]), line.get(next)) {
+                (None, _) => begin - self.of.away * ((line[0].at - plane) / self.pace),
+                (_, None) => end,
+                (Some(a), Some(b)) => surface.on_line(a.u + (b.u - a.u) * (plane - a.at) / (b.at - a.at), k),
+            }
         };
-        line.get(i).map_or_else(
-            || self.rows[self.rows.len() - 1][k],
-            |b| surface.point(a.u + (b.u - a.u) * (plane - a.at) / (b.at - a.at), v),
-        )
+        planes.iter().map(point).collect()
     }
 }
 

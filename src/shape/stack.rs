@@ -250,10 +250,11 @@ impl Stack {
     }
 
     /// The four samples of a row from column `j` on, turned by so many.
-    fn four(&self, row: usize, j: usize, turn: usize) -> &[DVec3] {
+    #[inline]
+    fn four(&self, row: usize, j: usize, turn: usize) -> &[DVec3; 4] {
         let column = if j + turn < self.around { j + turn } else { j + turn - self.around };
         let first = row * (self.around + BESIDE) + column;
-        &self.samples[first..first + 4]
+        self.samples[first..].first_chunk().unwrap_or(&[DVec3::ZERO; 4])
     }
 
     fn place(&self, u: f64, v: f64) -> DVec3 {
@@ -273,7 +274,18 @@ impl Stack {
         place
     }
 
-    fn eval(&self, u: f64, v: f64) -> Jet {
+    /// The `k`-th line along the tube, which goes through a sample of each row.
+    pub(crate) fn on_line(&self, u: f64, k: usize) -> DVec3 {
+        let mut place = DVec3::ZERO;
+        for (row, turn, value, _) in self.weights(u) {
+            if value != 0.0 {
+                place += self.four(row, k, turn)[1] * value;
+            }
+        }
+        place
+    }
+
+    fn eval(&self, rows: &[(usize, usize, f64, f64); 4], v: f64) -> Jet {
         let (j, t) = self.column(v);
         let t2 = t * t;
         let along = values(t);
@@ -284,21 +296,27 @@ impl Stack {
             per * (1.0 + 8.0 * t - 9.0 * t2),
             per * (3.0 * t2 - 2.0 * t),
         ];
-        let mut jet = Jet::default();
-        for (row, turn, value, rise) in self.weights(u) {
-            if value == 0.0 && rise == 0.0 {
+        // Point and slope side by side, so that both are taken at a time.
+        let (mut jet, mut du) = ([[0.0; 2]; 3], [0.0; 3]);
+        for (row, turn, value, rise) in rows {
+            if *value == 0.0 && *rise == 0.0 {
                 continue;
             }
-            let (mut point, mut dv) = (DVec3::ZERO, DVec3::ZERO);
-            for (sample, (along, slope)) in self.four(row, j, turn).iter().zip(along.iter().zip(&slope)) {
-                point += *sample * *along;
-                dv += *sample * *slope;
+            let mut sums = [[0.0; 2]; 3];
+            for (sample, (along, slope)) in self.four(*row, j, *turn).iter().zip(along.iter().zip(&slope)) {
+                for (sum, x) in sums.iter_mut().zip(sample.to_array()) {
+                    sum[0] += x * along;
+                    sum[1] += x * slope;
+                }
             }
-            jet.point += point * value;
-            jet.du += point * rise;
-            jet.dv += dv * value;
+            for axis in 0..3 {
+                jet[axis][0] += sums[axis][0] * value;
+                jet[axis][1] += sums[axis][1] * value;
+                du[axis] += sums[axis][0] * rise;
+            }
         }
-        jet
+        let [point, dv] = [0, 1].map(|k| DVec3::from_array(jet.map(|axis| axis[k])));
+        Jet { point, du: DVec3::from_array(du), dv }
     }
 }
 
@@ -318,7 +336,13 @@ impl ParametricSurface for Stack {
         self.place(u, v)
     }
     fn jet(&self, u: f64, v: f64) -> Jet {
-        self.eval(u, v)
+        self.eval(&self.weights(u), v)
+    }
+    fn ring(&self, u: f64, from: f64, jets: &mut [Jet]) {
+        let (rows, count) = (self.weights(u), jets.len() as f64);
+        for (k, jet) in jets.iter_mut().enumerate() {
+            *jet = self.eval(&rows, from + k as f64 / count);
+        }
     }
 }
 
