@@ -2,6 +2,7 @@
 //! (Hermite interpolation by the radial function r^3; Macedo, Gois and Velho 2011).
 
 use glam::{DMat3, DVec3};
+use pulp::{Arch, NullaryFnOnce};
 
 /// Most points that a patch is laid through.
 const MOST: usize = 26;
@@ -124,9 +125,34 @@ fn spread(all: &[(DVec3, DVec3)]) -> Vec<(DVec3, DVec3)> {
     chosen
 }
 
+/// Rows from which the top one is taken so often that nothing is left in a column: compiled for instructions as wide as there are.
+struct Rows<'r> {
+    top: &'r [f64],
+    rest: &'r mut [f64],
+    column: usize,
+}
+
+impl NullaryFnOnce for Rows<'_> {
+    type Output = ();
+
+    #[expect(clippy::inline_always, reason = "what is inlined is compiled for wider instructions")]
+    #[inline(always)]
+    fn call(self) {
+        let Self { top, rest, column } = self;
+        for row in rest.chunks_exact_mut(top.len()) {
+            let factor = row[column] / top[column];
+            if factor != 0.0 {
+                for (x, y) in row[column..].iter_mut().zip(&top[column..]) {
+                    *x -= factor * y;
+                }
+            }
+        }
+    }
+}
+
 /// Solves a dense system by elimination with row exchange; the right side is the last column.
 pub(super) fn eliminate(mut system: Vec<f64>, size: usize) -> Option<Vec<f64>> {
-    let width = size + 1;
+    let (arch, width) = (Arch::new(), size + 1);
     for column in 0..size {
         let pivot = (column..size).max_by(|a, b| {
             system[a * width + column].abs().total_cmp(&system[b * width + column].abs()).then(b.cmp(a))
@@ -140,14 +166,7 @@ pub(super) fn eliminate(mut system: Vec<f64>, size: usize) -> Option<Vec<f64>> {
         }
         let (done, rest) = system.split_at_mut((column + 1) * width);
         let top = &done[column * width..];
-        for row in rest.chunks_exact_mut(width) {
-            let factor = row[column] / top[column];
-            if factor != 0.0 {
-                for (x, y) in row[column..].iter_mut().zip(&top[column..]) {
-                    *x -= factor * y;
-                }
-            }
-        }
+        arch.dispatch(Rows { top, rest, column });
     }
     let mut x = vec![0.0; size];
     for row in (0..size).rev() {
