@@ -321,8 +321,8 @@ impl<'s> Weaver<'s> {
 
     /// Works one row over the bases: shaping, tops, edges and tiles. Returns the tops and the base of each.
     fn work(&mut self, bases: &[NodeId], taste: Taste) -> (Vec<NodeId>, Vec<NodeId>) {
-        let feet = std::mem::take(&mut self.feet);
-        let feet = &feet[..bases.len()];
+        let all_feet = std::mem::take(&mut self.feet);
+        let feet = &all_feet[..bases.len()];
         self.gaps.clear();
         for (i, foot) in feet.iter().enumerate() {
             let before = if i == 0 { self.last_foot } else { Some(feet[i - 1].point) };
@@ -378,6 +378,8 @@ impl<'s> Weaver<'s> {
             }
         }
         self.last_foot = feet.last().map(|foot| foot.point);
+        // The next row has use for the room.
+        self.feet = all_feet;
         self.behind.clear();
         self.behind.extend(bases.iter().rev().take(REACH));
         (tops, top_base)

@@ -123,13 +123,15 @@ impl Mesh {
             self.holes(plan)?;
             return self.cut_coarse(plan, &mut progress);
         }
-        // Most often there is no fault, so the rest does not wait for the search: that begins with the first step, when what all
-        // else waits for is there.
+        // Most often there is no fault, so the rest does not wait for the search: that begins when what all else waits for is there,
+        // beside what one thread does.
         let mut holes = None;
         let cut = rayon::in_place_scope(|scope| {
             let mut place = Some(&mut holes);
             let mut progress = |done, all| {
-                if let Some(place) = place.take() {
+                if (done > 0 || all == 1)
+                    && let Some(place) = place.take()
+                {
                     scope.spawn(|_| *place = Some(self.holes(plan)));
                 }
                 progress(done, all);
