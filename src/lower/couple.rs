@@ -265,4 +265,22 @@ mod tests {
             assert!(point.distance(next) < 2.3, "neighbors are next to each other");
         }
     }
+
+    #[test]
+    fn a_bound_leaves_the_best_grouping_and_nothing_beyond_it() {
+        let (ring, other) = (circle(9, 4.0, 0.3), circle(12, 4.4, 0.1));
+        let distance = |i: usize, j: usize| ring[i].distance(other[j]);
+        let mut table = Table::default();
+        let none = vec![0.0; ring.len() + 1];
+        let free = straight([9, 12], 2, (f64::INFINITY, &none), &mut table, distance).unwrap();
+        let mut rest = none;
+        for i in (0..9).rev() {
+            rest[i] = rest[i + 1] + (0..12).map(|j| distance(i, j)).fold(f64::INFINITY, f64::min);
+        }
+        let bound = free.0 + 1e-9;
+        // The table is that of the search before.
+        assert_eq!(straight([9, 12], 2, (bound, &rest), &mut table, distance), Some(free.clone()));
+        assert_eq!(straight([9, 12], 2, (free.0 - 1e-9, &rest), &mut table, distance), None);
+        assert_eq!(free.1.iter().fold((0, 0), |sum, it| (sum.0 + it.0, sum.1 + it.1)), (9, 12));
+    }
 }

@@ -377,4 +377,29 @@ mod tests {
             assert!(slope.distance(jet.dv) < 1e-4 * slope.length().max(1.0), "{slope} {}", jet.dv);
         }
     }
+
+    #[test]
+    fn lines_and_rings_are_those_of_single_places() {
+        let around = |k: u32, angle: f64, radius: f64| {
+            let (sin, cos) = math::sin_cos(-math::TAU * f64::from(k) / 96.0);
+            DVec3::new(radius * cos + 0.2 * angle * angle, 0.8 * radius * sin, 3.0 * angle)
+        };
+        let rings: Vec<Ring> = (0..9)
+            .map(|i| (f64::from(i), 4.0 + math::sin(f64::from(i))))
+            .map(|(angle, radius)| Ring::new((0..96).map(|k| around(k, angle, radius)).collect()).unwrap())
+            .collect();
+        let stack = Stack::new(&rings, [None, Some(DVec3::new(16.0, 0.0, 27.0))], 32).unwrap();
+        for u in [-0.01, 0.0, 0.3, 0.77, 0.999, 1.0] {
+            for k in 0..32 {
+                let point = stack.point(u, k as f64 / 32.0);
+                assert!(stack.on_line(u, k).distance(point) < 1e-12);
+            }
+            let mut jets = [Jet::default(); 24];
+            stack.ring(u, 0.4, &mut jets);
+            for (k, jet) in jets.iter().enumerate() {
+                assert_eq!(format!("{jet:?}"), format!("{:?}", stack.jet(u, 0.4 + k as f64 / 24.0)));
+                assert!(jet.point.distance(stack.point(u, 0.4 + k as f64 / 24.0)) < 1e-12);
+            }
+        }
+    }
 }
