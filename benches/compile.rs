@@ -2,7 +2,7 @@
 //! finer stitches on one shape to show that the cost of a stitch stays the same; and the generator alone, in a hurry and
 //! without settling.
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group};
 use picot::backends::target;
 use picot::diag::{Sink, Sources};
 use picot::frontend::{Input, reader};
@@ -99,4 +99,10 @@ fn generator(criterion: &mut Criterion) {
 }
 
 criterion_group!(benches, paper, scale, generator);
-criterion_main!(benches);
+
+/// As the program does it.
+fn main() {
+    picot::process::set_up();
+    benches();
+    Criterion::default().configure_from_args().final_summary();
+}

@@ -1,7 +1,7 @@
 //! Meshes, from the bytes of a file to the text of a pattern: a cactus at three gauges, and closed forms with ever more
 //! triangles.
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group};
 use glam::DVec3;
 use picot::backends::target;
 use picot::diag::{Sink, Sources};
@@ -133,4 +133,10 @@ fn large(criterion: &mut Criterion) {
 }
 
 criterion_group!(benches, cactus, given, large);
-criterion_main!(benches);
+
+/// As the program does it.
+fn main() {
+    picot::process::set_up();
+    benches();
+    Criterion::default().configure_from_args().final_summary();
+}

@@ -47,6 +47,7 @@ pub mod math;
 pub mod metrics;
 pub mod passes;
 pub mod preview;
+pub mod process;
 pub mod settings;
 pub mod shape;
 

@@ -104,9 +104,7 @@ pub(crate) fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(Status::Usage as u8));
         }
     };
-    keep_memory();
-    // The main thread works, too. Memory that it gives back stays at hand, other threads return it to the system at once.
-    let _ = rayon::ThreadPoolBuilder::new().use_current_thread().build_global();
+    picot::process::set_up();
     let report = report::Report::new(&cli.global);
     let outcome = match &cli.command {
         Command::Build(arguments) => build::run(arguments, report),
@@ -128,14 +126,6 @@ pub(crate) fn main() -> ExitCode {
             failure.status().into()
         }
     }
-}
-
-/// Has the allocator keep memory at hand that is given back: one large block tells that of glibc not to return anything less to
-/// the system, which would have to clear each page once more. It never touches the block, and others do as they do.
-fn keep_memory() {
-    // Four times as much, and a million stitches take a tenth more memory.
-    const MOST: usize = 2 << 20;
-    drop(std::hint::black_box(Vec::<u8>::with_capacity(MOST)));
 }
 
 /// Writes data to stdout.
