@@ -19,8 +19,8 @@ const MANY: usize = 50_000;
 /// of the next, which then settle once more: what hangs over its edge is far enough away. A band has several times as many rows,
 /// and of long ones no more, for they would not stay near.
 const BAND: usize = 1 << 16;
-const OVERLAP: usize = 10;
-const ROWS: usize = 4 * OVERLAP;
+const OVERLAP: usize = 5;
+const ROWS: usize = 5 * OVERLAP;
 /// Sweeps over the whole after which a try is judged.
 const FIRST_SWEEPS: u32 = 4;
 
