@@ -17,7 +17,7 @@ const STILL: f64 = 1e-4;
 /// Points of a row that tell where the axis is; what is off by so many times the tolerance even so needs no steps.
 const FEW: usize = 32;
 const FAR: f64 = 8.0;
-/// One of so many points of a row tell how it runs.
+/// One of so many points of a row are enough to tell how it runs.
 const TELLING: usize = 4;
 /// Stretches of the meridian to both sides on which the foot of a point is sought.
 const BESIDE: usize = 3;
@@ -49,9 +49,11 @@ impl Stack {
         let rows: Vec<&[DVec3]> = self.rows().collect();
         let closed = self.ends().map(|end| end == End::Closed);
         let mut axis = Axis::of(&rows)?;
-        let given: Vec<Vec<DVec3>> = rows.iter().map(|row| given(row, mended)).collect();
-        let rows: Vec<&[DVec3]> =
-            if mended.is_empty() { rows } else { given.iter().map(Vec::as_slice).collect() };
+        let parts: Vec<Vec<DVec3>> = match mended {
+            [] => Vec::new(),
+            _ => rows.iter().map(|row| given(row, mended)).collect(),
+        };
+        let rows = if mended.is_empty() { rows } else { parts.iter().map(Vec::as_slice).collect() };
         // Most tubes are not round by far.
         let limit = |radius: f64| (TOLERANCE * width).max(SHARE * radius);
         let mut meridian = axis.meridian(&rows, closed);
