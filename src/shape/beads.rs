@@ -37,14 +37,9 @@ impl Beads {
         Self { balls: rings.iter().enumerate().map(ball).collect() }
     }
 
-    /// The place of a ball, or between two, at `u`.
-    fn place(&self, u: f64) -> f64 {
-        u.clamp(0.0, 1.0) * self.balls.len().saturating_sub(1) as f64
-    }
-
     /// Those of the tube from `u` on; `None` where it begins before its first ball.
     pub(crate) fn from(mut self, u: f64) -> Option<Self> {
-        self.balls.drain(..self.place(u) as usize);
+        self.balls.drain(..place(u, self.balls.len()) as usize);
         (u >= 0.0).then_some(self)
     }
 
@@ -75,6 +70,11 @@ impl Beads {
     }
 }
 
+/// The place of one of so many balls, or between two, at `u`.
+fn place(u: f64, count: usize) -> f64 {
+    u.clamp(0.0, 1.0) * count.saturating_sub(1) as f64
+}
+
 /// Which parts of a tube lie outside of a body.
 #[derive(Debug)]
 pub(crate) struct Outside(Vec<bool>);
@@ -82,9 +82,8 @@ pub(crate) struct Outside(Vec<bool>);
 impl Outside {
     /// True when all between two places certainly does.
     pub(crate) fn between(&self, low: f64, high: f64) -> bool {
-        let scale = self.0.len().saturating_sub(1) as f64;
-        let at = |u: f64| u.clamp(0.0, 1.0) * scale;
-        let (first, last) = (at(low).floor() as usize, at(high).ceil() as usize);
+        let [low_place, high_place] = [low, high].map(|u| place(u, self.0.len()));
+        let (first, last) = (low_place.floor() as usize, high_place.ceil() as usize);
         low >= 0.0 && self.0.get(first..=last).is_some_and(|part| part.iter().all(|clear| *clear))
     }
 }

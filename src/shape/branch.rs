@@ -78,12 +78,11 @@ impl<S: ParametricSurface> Branch<S> {
         let girth = super::girth(&surface, 0.0, 32);
         let length = super::length_along(&surface, 0.0, 0.0..1.0, 8).max(1e-9);
         let back = BACKWARD * girth / length;
-        let turn = |k: usize| k as f64 / AROUND as f64;
         // Lines beside each other share what they find.
         let ways = |first: usize| -> Vec<Way> {
             let mut known = Known::default();
             let lines = first..(first + TOGETHER).min(AROUND);
-            lines.map(|k| Way::out(&surface, parent, turn(k), back, &mut known)).collect()
+            lines.map(|k| Way::out(&surface, parent, turn(k, AROUND), back, &mut known)).collect()
         };
         let ways: Vec<Vec<Way>> =
             (0..AROUND.div_ceil(TOGETHER)).into_par_iter().map(|k| ways(k * TOGETHER)).collect();
@@ -97,7 +96,7 @@ impl<S: ParametricSurface> Branch<S> {
             }
         }
         if outs.is_empty() {
-            let lines = (0..AROUND).map(|k| distance(&surface, parent, turn(k), back));
+            let lines = (0..AROUND).map(|k| distance(&surface, parent, turn(k, AROUND), back));
             return Err(Misfit::Apart { distance: lines.fold(f64::INFINITY, f64::min) });
         }
         if outs.len() < AROUND {
@@ -188,6 +187,11 @@ impl<S: ParametricSurface> ParametricSurface for Branch<S> {
         let jet = self.surface.jet(place, v);
         Jet { point: jet.point, du: jet.du * along, dv: jet.dv + jet.du * around }
     }
+}
+
+/// The `k`-th of so many places around, in turns.
+pub(super) fn turn(k: usize, of: usize) -> f64 {
+    k as f64 / of as f64
 }
 
 /// Where a tube runs into another one, if it does; in mm.

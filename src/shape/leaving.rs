@@ -1,7 +1,7 @@
 //! A branch that begins as a part of its parent's surface: where it leaves it, and how its rows lie from there on.
 
 use super::axis::Axis;
-use super::branch::{ALONG, AROUND, Branch, Misfit, ROUNDED, TOGETHER, mean, soften};
+use super::branch::{ALONG, AROUND, Branch, Misfit, ROUNDED, TOGETHER, mean, soften, turn};
 use super::ring::Ring;
 use super::solid::{Foot, Solid};
 use super::stack::Stack;
@@ -199,11 +199,6 @@ impl<'l> Upright<'l> {
     }
 }
 
-/// The `k`-th of so many places around, in turns.
-fn turn(k: usize, of: usize) -> f64 {
-    k as f64 / of as f64
-}
-
 /// How far straight back from a point of a branch its parent lies, which is no farther from it than `reach`; 0 where it
 /// lies beside that way. The foot moves there.
 fn way_back(point: DVec3, axis: DVec3, foot: &mut Foot, parent: &Solid<'_>, reach: f64) -> f64 {
@@ -239,14 +234,14 @@ fn clear_of(surface: &Stack, parent: &Solid<'_>, reach: f64) -> Result<(Vec<f64>
     let length = super::length_along(surface, 0.0, 0.0..1.0, 8).max(1e-9);
     let mut feet: Vec<Foot> = Vec::with_capacity(AROUND);
     for k in 0..AROUND {
-        let begin = surface.point(0.0, k as f64 / AROUND as f64);
+        let begin = surface.point(0.0, turn(k, AROUND));
         // Beside the foot of the line before, if it lies there.
         let beside = feet.last().map(|foot| parent.refine_to(begin, foot.u, foot.v, NEARLY));
         feet.push(beside.filter(|foot| foot.distance.abs() < reach).unwrap_or_else(|| parent.foot(begin)));
     }
     // Along a line from its begin: the last place within reach, `None` where it goes on to the end, and the foot there.
     let follow = |(k, mut foot): (usize, Foot)| {
-        let v = k as f64 / AROUND as f64;
+        let v = turn(k, AROUND);
         let next_to = |u: f64, foot: &Foot| parent.refine_to(surface.point(u, v), foot.u, foot.v, NEARLY);
         let (mut near, mut far) = (0.0, None);
         while near < 1.0 {
