@@ -10,8 +10,15 @@ use std::collections::BTreeMap;
 
 /// The graph of a finished sheet. `start` is the number of nodes of the first row.
 /// `turn` is the place around the tube where the helix began.
-pub(crate) fn graph(sheet: &Sheet, rows: &Rows, start: usize, poles: [Option<DVec3>; 2], turn: f64) -> Graph {
-    let order = Order::of(sheet, start);
+pub(crate) fn graph(
+    mut sheet: Sheet,
+    rows: &Rows,
+    start: usize,
+    poles: [Option<DVec3>; 2],
+    turn: f64,
+) -> Graph {
+    sheet.keep_work();
+    let order = Order::of(&sheet, start);
     let mut nodes = vec![Node { position: DVec3::ZERO, u: 0.0, tau: 0.0, v: 0.0 }; sheet.len()];
     let mut knot = 0;
     for (old, &new) in order.new_id.iter().enumerate() {

@@ -211,7 +211,7 @@ fn lay_on(
         return fail(sink, code, message, help);
     }
     tell_wider(stout.as_ref(), gauge, &tube.name, sink);
-    Some(finish::graph(&sheet, lifted.as_ref().unwrap_or(&rows), start, site.poles(), turn))
+    Some(finish::graph(sheet, lifted.as_ref().unwrap_or(&rows), start, site.poles(), turn))
 }
 
 /// Where around the tube the helix begins: `by` where its first row is picked up.

@@ -11,6 +11,9 @@ const SMALL: [usize; 2] = [800, 1_450];
 const LARGE: [usize; 2] = [4_500, 6_000];
 const LONGER: f64 = 1.43;
 const LESS: f64 = 0.4;
+/// Over rows of more nodes than this, this share of the window settles.
+const LONG_ROW: usize = 1_000;
+const FEWER_ROWS: [u32; 2] = [2, 3];
 
 /// How far a number has come from the first to the second of two, as a share.
 fn past(number: usize, [from, to]: [usize; 2]) -> f64 {
@@ -45,7 +48,7 @@ pub struct Options {
     pub activation: f64,
     /// Missing height over which two close short rows are merged into one (paper: tolerance threshold).
     pub tolerance: f64,
-    /// Rows that are settled again after each new row (paper: the moving window).
+    /// Rows that are settled again after each new row (paper: the moving window), a third fewer of rows over 1,000 stitches.
     pub window: u32,
     /// Sweeps over the window after each row.
     pub window_sweeps: u32,
@@ -154,6 +157,13 @@ impl Options {
         self.sweeps + (f64::from(self.sweeps) * LONGER * more) as u32
     }
 
+    /// Rows that settle after one of so many nodes: the processor keeps fewer long ones near, and these need less of it, for they
+    /// bend less from stitch to stitch.
+    pub(super) fn window_over(&self, row: usize) -> usize {
+        let [share, of] = if row > LONG_ROW { FEWER_ROWS } else { [1, 1] };
+        (self.window * share).div_ceil(of) as usize
+    }
+
     /// Without hurry.
     pub(super) fn unhurried(&self) -> Self {
         Self { preset: Preset::Std, ..self.clone() }
@@ -182,5 +192,17 @@ impl Options {
         .into_iter()
         .find(|(fine, ..)| !fine)
         .map(|(_, name, right)| (name, right))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_third_fewer_of_long_rows_settle() {
+        let over = |window: u32, row: usize| Options { window, ..Options::default() }.window_over(row);
+        assert_eq!([over(3, 30), over(3, 1_000), over(3, 1_001), over(3, 5_000)], [3, 3, 2, 2]);
+        assert_eq!([over(1, 5_000), over(2, 5_000), over(8, 5_000)], [1, 2, 6]);
     }
 }

@@ -205,6 +205,11 @@ impl Sheet {
         (self.steps, self.arrival) = Default::default();
     }
 
+    /// Nothing settles from now on: of a large part that is half of all it holds.
+    pub(crate) fn keep_work(&mut self) {
+        (self.du, self.dv, self.edges, self.quads) = Default::default();
+    }
+
     /// Adds the yarn's edge from one node to the next.
     pub(crate) fn course(&mut self, a: NodeId, b: NodeId) {
         self.arrival[b as usize] = self.edges.len() as u32;

@@ -79,7 +79,11 @@ impl Weaver<'_> {
         if self.quick() && !self.marks.len().is_multiple_of(2) {
             return;
         }
-        let oldest = self.marks.len().saturating_sub(self.options.window as usize);
+        let row = match *self.marks.as_slice() {
+            [.., before, newest] => newest.nodes - before.nodes,
+            _ => 0,
+        };
+        let oldest = self.marks.len().saturating_sub(self.options.window_over(row));
         let Some(&mark) = self.marks.get(oldest) else { return };
         let mark = if oldest == 0 { self.free(Mark::default()) } else { self.free(mark) };
         let effort = Effort { sweeps: self.options.window_sweeps, squareness: WINDOW_SQUARENESS };
