@@ -246,12 +246,16 @@ pub(crate) struct Bench {
     /// Instead print what the option `readability` does to the patterns of these shape files
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with = "paper")]
     pub(crate) readability: Vec<String>,
+    /// Instead print the time of a stitch by the size of the whole, up to so many stitches: 10000000 where none are given
+    #[arg(long, value_name = "STITCHES", num_args = 0..=1, default_missing_value = "10000000",
+        value_parser = clap::value_parser!(u32).range(1_000..=10_000_000), conflicts_with_all = ["paper", "readability"])]
+    pub(crate) scale: Option<u32>,
     /// Write all numbers to a file as JSON; `-` is stdout
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<String>,
-    /// Runs of each case; the median counts
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    pub(crate) runs: u32,
+    /// Runs of each case, of which the median counts (20), or with `--scale` the least (5 turns)
+    #[arg(long, conflicts_with = "readability", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub(crate) runs: Option<u32>,
 }
 
 #[derive(Debug, Args)]

@@ -268,6 +268,20 @@ fn bench_sets_the_papers_figures_beside_ours() {
 }
 
 #[test]
+fn bench_tells_what_a_stitch_costs_by_size() {
+    let text = stdout(&run(&["bench", "--scale", "1500", "--runs", "1"]).code(0));
+    let rows =
+        text.lines().filter(|line| line.split_whitespace().count() == 5 && !line.contains("us/stitch"));
+    assert_eq!(rows.count(), 2, "{text}");
+    let value = json(&["bench", "--scale", "1000", "--runs", "1", "--json", "-"]);
+    assert_eq!(value["schema"], "picot.scale/1");
+    let stitches = value["sizes"][0]["stitches"].as_u64().expect("a number");
+    assert!((900..1_100).contains(&stitches), "{stitches}");
+    let wrong = stderr(&run(&["bench", "--scale", "10"]).code(2));
+    assert!(wrong.contains("1000"), "{wrong}");
+}
+
+#[test]
 fn lists_have_text_and_json() {
     for topic in ["targets", "readers", "passes", "stitches", "codes"] {
         let value = json(&["list", topic, "--json"]);

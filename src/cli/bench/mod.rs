@@ -3,6 +3,7 @@
 mod fidelity;
 mod printed;
 mod reading;
+mod scale;
 mod tables;
 
 use super::args::{Algorithm, Bench};
@@ -21,6 +22,8 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::time::Duration;
 
+/// Runs of each case, where nothing else is asked.
+const RUNS: u32 = 20;
 /// Stitch sizes of the paper in mm.
 const SIZES: [f64; 3] = [2.5, 2.0, 1.5];
 
@@ -64,11 +67,15 @@ pub(crate) fn run(arguments: &Bench, report: Report) -> Result<Status, Failure> 
     if !arguments.readability.is_empty() {
         return reading::run(&arguments.readability, arguments.json.as_deref(), report);
     }
+    if let Some(most) = arguments.scale {
+        return scale::run(most, arguments.runs, arguments.json.as_deref(), report);
+    }
+    let runs = arguments.runs.unwrap_or(RUNS);
     let bar = Bar::new((PRINTED.len() * SIZES.len()) as u64, report.quiet());
     let mut cases = Vec::new();
     for printed in &PRINTED {
         for size in SIZES {
-            cases.push(case(printed, size, arguments.runs, report)?);
+            cases.push(case(printed, size, runs, report)?);
             bar.advance(printed.name);
         }
     }
@@ -76,7 +83,7 @@ pub(crate) fn run(arguments: &Bench, report: Report) -> Result<Status, Failure> 
     bar.clear();
     let machine = machine();
     let json = arguments.json.as_deref();
-    if let Some(status) = write_json(json, || to_json(&cases, &fidelity, arguments.runs, &machine))? {
+    if let Some(status) = write_json(json, || to_json(&cases, &fidelity, runs, &machine))? {
         return Ok(status);
     }
     let text = if arguments.paper {
@@ -84,8 +91,13 @@ pub(crate) fn run(arguments: &Bench, report: Report) -> Result<Status, Failure> 
     } else {
         tables::times(&cases)
     };
+    print(format!("{text}\n{}\n", footer("medians", &format!("{runs} runs"), &machine)).as_bytes())
+}
+
+/// What the times are, and of what they were taken.
+fn footer(what: &str, of: &str, machine: &str) -> String {
     let build = if cfg!(debug_assertions) { "debug build: times say little; " } else { "" };
-    print(format!("{text}\n{build}medians of {} runs on {machine}\n", arguments.runs).as_bytes())
+    format!("{build}{what} of {of} on {machine}")
 }
 
 /// Writes JSON where it is asked for; where that is stdout, nothing else goes there, and the status of that is returned.
@@ -152,13 +164,13 @@ fn case(printed: &'static Printed, size: f64, runs: u32, report: Report) -> Resu
     })
 }
 
-/// From the text of the shape to the text of the pattern.
+/// From the text of the shape to the text of the pattern; the number of its stitches.
 fn whole(
     printed: &Printed,
     options: &picot::Options,
     watch: &Watch<'_>,
     report: Report,
-) -> Result<(), Failure> {
+) -> Result<u64, Failure> {
     let loader = |_: &str| Err(std::io::ErrorKind::NotFound.into());
     let mut sources = Sources::new(&loader);
     let mut sink = Sink::with_observer(watch);
@@ -171,13 +183,12 @@ fn whole(
         let backend = target("crochet")?.configure(toml::Table::new()).ok()?;
         let mut text = Vec::new();
         backend.emit(&verified, &mut text, &mut sink).ok()?;
-        Some(())
+        Some(verified.facts().stitches(&verified))
     })();
-    if outcome.is_none() {
+    outcome.ok_or_else(|| {
         report::print(&report.render(&sources, sink.diagnostics()));
-        return Err(broken(printed));
-    }
-    Ok(())
+        broken(printed)
+    })
 }
 
 fn shape(printed: &Printed, options: &picot::Options, sink: &mut Sink<'_>) -> Option<Box<Shape>> {
