@@ -21,12 +21,17 @@ pub(super) fn check(chain: &Chain, frames: &Frames, stack: &Stack, breaks: &[f64
 fn ratio(chain: &Chain, frames: &Frames, stack: &Stack, w: f64, samples: u32) -> f64 {
     let (segment, t) = chain.locate(w);
     let place = chain.place(segment, t);
-    let axis = frames.axis(segment, t, &place);
+    let round = stack.half_axes(w).filter(|[a, b]| a == b);
+    let axis = || frames.axis(segment, t, &place);
     // How far neighboring sections fall behind each other on the worst side, a unit of the parameter.
-    let lag = if stack.planar() {
+    let lag = if let Some([radius, _]) = round {
+        radius.abs() * place.turn.length()
+    } else if stack.planar() {
+        let axis = axis();
         let other = place.tangent.cross(axis);
         stack.reach(w, DVec2::new(place.turn.dot(axis), place.turn.dot(other)))
     } else {
+        let axis = axis();
         let behind = |k: u32| {
             let jet = carry::<false>(&place, axis, &stack.eval(w, f64::from(k) / f64::from(samples)));
             place.speed - jet.du.dot(place.tangent)
@@ -104,6 +109,9 @@ fn crossing(chain: &Chain, frames: &Frames, stack: &Stack) -> Result<(), Fault> 
     let slice = |w: f64| {
         let (segment, t) = chain.locate(w);
         let place = chain.place(segment, t);
+        if let Some([a, b]) = stack.half_axes(w) {
+            return Slice { w, center: place.point, tangent: place.tangent, radius: a.abs().min(b.abs()) };
+        }
         let axis = frames.axis(segment, t, &place);
         let line = stack.at(w);
         let ring: [DVec3; 8] =

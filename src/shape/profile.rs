@@ -160,6 +160,14 @@ impl Stack {
         }
     }
 
+    /// The half axes of the section, where its middle certainly lies on the curve.
+    pub(super) fn half_axes(&self, w: f64) -> Option<[f64; 2]> {
+        let Kind::Ellipses { spans, squared } = &self.kind else { return None };
+        let span = span_at(spans, w);
+        let centered = span.cubics[2..].iter().flatten().all(|number| *number == 0.0);
+        centered.then(|| [0, 1].map(|i| span.number(i, w, *squared).0))
+    }
+
     /// Whether the profile has a part along the tangent.
     pub(super) fn planar(&self) -> bool {
         matches!(self.kind, Kind::Ellipses { .. })

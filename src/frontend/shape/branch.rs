@@ -157,11 +157,12 @@ pub(super) fn grow(
         }
         let Some(tube) = nodes.get_mut(index).and_then(|node| node.tube.take()) else { continue };
         let (sweep, places) = tube.sweep(RIM * gauge.height, walk)?;
-        let beads = fit::check(walk, &sweep, &places, gauge, gauge_span)?;
+        let rings = fit::check(walk, &sweep, &places, gauge, gauge_span)?;
         let node = nodes.get(index)?;
         let ends = [places.start, places.end];
         let (tube, beads) = if index == 0 {
-            (shape::Tube::new("trunk", Box::new(sweep), ends), Some(beads))
+            let beads = (nodes.len() > 1).then(|| rings.beads());
+            (shape::Tube::new("trunk", Box::new(sweep), ends), beads)
         } else {
             let root = root(&nodes, node.parent);
             let (parent, axis) = centers.get(&root)?;
@@ -170,6 +171,7 @@ pub(super) fn grow(
             begins(walk, node, &places, axis, at, base)?;
             let give = if node.joint == Joint::Opening { SLIT_GIVE } else { GIVE };
             let solid = bodies.solid(*parent, base);
+            let beads = rings.beads();
             match Branch::new(sweep, &beads, &solid, [gauge.width, give]) {
                 Ok(branch) => {
                     let beads = branch.beads(beads);

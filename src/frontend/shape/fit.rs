@@ -27,15 +27,27 @@ struct Measures {
     extent: f64,
 }
 
-/// Checks the tube against the gauge; of a sound one, the balls that hold it.
+/// Points around a tube at many places.
+pub(super) struct Rings {
+    points: Vec<DVec3>,
+}
+
+impl Rings {
+    /// Balls that hold the tube.
+    pub(super) fn beads(&self) -> Beads {
+        Beads::new(&self.points, AROUND)
+    }
+}
+
+/// Checks the tube against the gauge; of a sound one, points around it.
 pub(super) fn check(
     walk: &mut Walk<'_>,
     surface: &Sweep,
     places: &Places,
     gauge: &Gauge,
     gauge_span: Span,
-) -> Option<Beads> {
-    let (measures, beads) = measure(surface);
+) -> Option<Rings> {
+    let (measures, rings) = measure(surface);
     let loops = measures.area / (gauge.width * gauge.height);
     let widest = measures.girths.iter().copied().fold(0.0, f64::max) / gauge.width;
     let station = |index: usize| surface.curve_parameter(index as f64 / STATIONS as f64);
@@ -90,7 +102,7 @@ pub(super) fn check(
                 .help(format!("this file counts in {unit}, is that right?")),
         );
     }
-    Some(beads)
+    Some(rings)
 }
 
 fn unit_help(walk: &Walk<'_>) -> String {
@@ -113,7 +125,7 @@ fn narrowest_station(girths: &[f64], places: &Places) -> usize {
     stations.min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(index, _)| index)
 }
 
-fn measure(surface: &Sweep) -> (Measures, Beads) {
+fn measure(surface: &Sweep) -> (Measures, Rings) {
     let ring = |station: usize| {
         let mut points = [DVec3::ZERO; AROUND];
         surface.points_around(station as f64 / STATIONS as f64, &mut points);
@@ -142,5 +154,5 @@ fn measure(surface: &Sweep) -> (Measures, Beads) {
     }
     measures.length = meridians.into_iter().fold(0.0, f64::max);
     measures.extent = (high - low).max_element();
-    (measures, Beads::new(&points, AROUND))
+    (measures, Rings { points })
 }
