@@ -146,18 +146,20 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
 /// Largest angle between the tangents of neighboring stations, with the parameter where it is.
 fn largest_turn(chain: &Chain, per_segment: usize) -> (f64, f64) {
     let segments = chain.segments();
-    let (mut most, mut at) = (0.0, 0.0);
+    let (mut most, mut at, mut widest) = (0.0, 0.0, 0.0);
     for segment in 0..segments {
-        let mut last = chain.place(segment, 0.0).tangent;
+        let (_, mut last) = chain.stand(segment, 0.0);
         for k in 1..=per_segment {
             let t = k as f64 / per_segment as f64;
-            let tangent = chain.place(segment, t).tangent;
-            let turn = angle(last, tangent);
-            if turn.is_nan() {
+            let (_, tangent) = chain.stand(segment, t);
+            // Of unit vectors, those that are farther apart have the larger angle.
+            let apart = last.distance_squared(tangent);
+            if apart.is_nan() {
                 return (f64::NAN, (segment as f64 + t) / segments as f64);
             }
-            if turn > most {
-                (most, at) = (turn, (segment as f64 + t - 0.5 / per_segment as f64) / segments as f64);
+            if apart > widest {
+                (most, widest) = (angle(last, tangent), apart);
+                at = (segment as f64 + t - 0.5 / per_segment as f64) / segments as f64;
             }
             last = tangent;
         }
