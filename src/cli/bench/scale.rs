@@ -58,24 +58,18 @@ pub(super) fn run(
     if let Some(status) = super::write_json(json, file)? {
         return Ok(status);
     }
-    print(
-        format!(
-            "{}{}\n",
-            table(&sizes),
-            super::footer("the least", &format!("{rounds} rounds in turns"), &machine)
-        )
-        .as_bytes(),
-    )
+    let footer = super::footer("the least", &format!("{rounds} rounds in turns"), &machine);
+    print(format!("{}{footer}\n", table(&sizes)).as_bytes())
 }
 
-/// Those of the sizes that have no more stitches, or the first.
+/// Those of the sizes that have no more stitches.
 fn sizes(most: u32) -> Result<Vec<Size>, Failure> {
     let printed = printed();
     let mut sink = Sink::new();
     let shape = super::shape(printed, &picot::Options::default(), &mut sink);
     let shape = shape.ok_or_else(|| super::broken(printed))?;
     let area: f64 = shape.tubes.iter().map(|tube| picot::shape::area(&*tube.surface, 64, 64)).sum();
-    let counts = COUNTS.into_iter().filter(|count| *count <= most.max(COUNTS[0]));
+    let counts = COUNTS.into_iter().filter(|count| *count <= most);
     let size = |count: u32| Size {
         side: (area / f64::from(count)).sqrt(),
         stitches: 0,
