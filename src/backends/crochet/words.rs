@@ -3,6 +3,7 @@
 use super::Arrows;
 use crate::ir::dialect::{Forms, fill};
 use crate::ir::{Block, Direction, Entry, Kind, Language, Op, Part, Program, Step, Stitch, Terms};
+use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::ops::Range;
 
@@ -230,40 +231,45 @@ impl<'p> Words<'p> {
         // A slip stitch without a number at the end of a round would close it.
         let bare = times == 1 && stitch.kind != Kind::SlSt;
         let space = if forms.glued { "" } else { " " };
-        let count = if bare { String::new() } else { format!("{times}{space}") };
-        let named = format!("{count}{name}{entry}{place}");
+        let mut named = String::with_capacity(16);
+        if !bare {
+            let _ = write!(named, "{times}");
+            named.push_str(space);
+        }
+        let count = named.len();
+        [&*name, entry, place].into_iter().for_each(|word| named.push_str(word));
         if line.ring
             && arity == (0, 1)
             && !own
             && stitch.kind != Kind::Special
             && stitch.entry != Entry::Space
         {
-            let plain = format!("{count}{}{entry}", self.stitch(plain));
+            let plain = format!("{}{}{entry}", &named[..count], self.stitch(plain));
             return fill(forms.in_ring, &[("stitch", &plain)]);
         }
         named
     }
 
     /// Name of a stitch.
-    fn stitch(&self, stitch: Stitch) -> String {
-        let base = self.base(stitch.kind);
+    fn stitch(&self, stitch: Stitch) -> Cow<'static, str> {
         if let Some(letters) = self.language.letters(stitch) {
-            return letters.to_owned();
+            return letters.into();
         }
+        let base = self.base(stitch.kind);
         let plain = !self.mixed && stitch.kind == Kind::Sc;
         let own = (stitch.kind.works(), stitch.kind.makes());
-        let (inc, dec) = (self.language.say("inc"), self.language.say("dec"));
+        let (inc, dec) = (|| self.language.say("inc"), || self.language.say("dec"));
         match (stitch.works, stitch.makes) {
-            arity if arity == own && stitch.kind != Kind::Special => base.to_owned(),
+            arity if arity == own && stitch.kind != Kind::Special => base.into(),
             arity if !is_common(stitch.kind, arity) => {
-                super::rows::special(stitch.kind, arity.0, arity.1, self.terms)
+                super::rows::special(stitch.kind, arity.0, arity.1, self.terms).into()
             }
-            (1, 2) if plain => inc.to_owned(),
-            (1, 2) => format!("{base} {inc}"),
-            (1, makes) if plain => format!("{inc}{makes}"),
-            (1, makes) => format!("{base} {inc}{makes}"),
-            (2, _) if plain => dec.to_owned(),
-            (works, _) => format!("{base}{works}{}", self.forms().together),
+            (1, 2) if plain => inc().into(),
+            (1, 2) => format!("{base} {}", inc()).into(),
+            (1, makes) if plain => format!("{}{makes}", inc()).into(),
+            (1, makes) => format!("{base} {}{makes}", inc()).into(),
+            (2, _) if plain => dec().into(),
+            (works, _) => format!("{base}{works}{}", self.forms().together).into(),
         }
     }
 
