@@ -237,7 +237,9 @@ impl<'p> Words<'p> {
             named.push_str(space);
         }
         let count = named.len();
-        [&*name, entry, place].into_iter().for_each(|word| named.push_str(word));
+        for word in [&*name, entry, place] {
+            named.push_str(word);
+        }
         if line.ring
             && arity == (0, 1)
             && !own
