@@ -51,6 +51,16 @@ impl Span {
             (value, slope)
         }
     }
+
+    /// The two radii; `squared` if the cubics are of their squares.
+    fn half_axes(&self, w: f64, squared: bool) -> [f64; 2] {
+        [0, 1].map(|index| self.number(index, w, squared).0)
+    }
+
+    /// Whether there are no offsets.
+    fn centered(&self) -> bool {
+        self.cubics[2..].iter().flatten().all(|number| *number == 0.0)
+    }
 }
 
 impl Stack {
@@ -153,9 +163,7 @@ impl Stack {
     /// Whether the middle of each section certainly lies on the curve.
     pub(super) fn centered(&self) -> bool {
         match &self.kind {
-            Kind::Ellipses { spans, .. } => {
-                spans.iter().all(|span| span.cubics[2..].iter().flatten().all(|number| *number == 0.0))
-            }
+            Kind::Ellipses { spans, .. } => spans.iter().all(Span::centered),
             Kind::Loops(_) => false,
         }
     }
@@ -164,8 +172,7 @@ impl Stack {
     pub(super) fn half_axes(&self, w: f64) -> Option<[f64; 2]> {
         let Kind::Ellipses { spans, squared } = &self.kind else { return None };
         let span = span_at(spans, w);
-        let centered = span.cubics[2..].iter().flatten().all(|number| *number == 0.0);
-        centered.then(|| [0, 1].map(|i| span.number(i, w, *squared).0))
+        span.centered().then(|| span.half_axes(w, *squared))
     }
 
     /// Whether the profile has a part along the tangent.
@@ -192,7 +199,7 @@ impl Stack {
         match &self.kind {
             Kind::Ellipses { spans, squared } => {
                 let span = span_at(spans, w);
-                let [a, b] = [span.number(0, w, *squared).0, span.number(1, w, *squared).0];
+                let [a, b] = span.half_axes(w, *squared);
                 let offset = DVec2::new(span.number(2, w, false).0, span.number(3, w, false).0);
                 offset.dot(toward) + (toward * DVec2::new(a, b)).length()
             }

@@ -54,8 +54,13 @@ impl Case {
 
     /// Microseconds a stitch.
     fn per_stitch(&self, time: Duration) -> f64 {
-        time.as_secs_f64() * 1e6 / self.picot.measure.stitches.max(1) as f64
+        per_stitch(time, self.picot.measure.stitches as u64)
     }
+}
+
+/// Microseconds a stitch.
+fn per_stitch(time: Duration, stitches: u64) -> f64 {
+    time.as_secs_f64() * 1e6 / stitches.max(1) as f64
 }
 
 /// The generator announces stages of its own between those of the pipeline.

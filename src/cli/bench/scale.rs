@@ -1,5 +1,6 @@
 //! The time of a stitch by the size of the whole: shape D with ever finer stitches, from text to text.
 
+use super::super::measure::milliseconds;
 use super::super::progress::{Bar, Watch, now};
 use super::super::report::Report;
 use super::super::{Failure, Status, print};
@@ -30,7 +31,7 @@ struct Size {
 impl Size {
     /// Microseconds a stitch.
     fn per_stitch(&self) -> f64 {
-        self.time.as_secs_f64() * 1e6 / self.stitches.max(1) as f64
+        super::per_stitch(self.time, self.stitches)
     }
 }
 
@@ -124,7 +125,7 @@ fn to_json(sizes: &[Size], rounds: u32, machine: &str) -> Value {
         .iter()
         .map(|size| {
             json!({ "stitch_mm": size.side, "stitches": size.stitches, "us_per_stitch": size.per_stitch(),
-                "total_ms": size.time.as_secs_f64() * 1e3, "runs": size.runs })
+                "total_ms": milliseconds(size.time), "runs": size.runs })
         })
         .collect();
     json!({ "schema": "picot.scale/1", "version": env!("CARGO_PKG_VERSION"), "machine": machine, "rounds": rounds,
